@@ -5,6 +5,7 @@
 
 #include "command.hpp"
 #include "design_options.hpp"
+#include "posewright/outputs/stated_error.hpp"
 #include "posewright/outputs/table.hpp"
 #include "posewright/outputs/write_plan.hpp"
 #include "posewright/support/bytes.hpp"
@@ -63,8 +64,8 @@ void write(const FleetFiles& files, const FleetPlan& plan) {
 
 std::string fleet_text(const std::vector<std::string>& names, const std::vector<FleetPlan>& fleet) {
   using Align = Table::Align;
-  Table table({"robot", "variant", "poses", "log det", "of the best at least", "predicted error"},
-              {Align::left, Align::left, Align::right, Align::right, Align::right, Align::right});
+  Table table({"robot", "variant", "poses", "log det", "of the best at least", "predicted error", "from noise alone"},
+              {Align::left, Align::left, Align::right, Align::right, Align::right, Align::right, Align::right});
   std::string failures;
   for (std::size_t i = 0; i < fleet.size(); ++i) {
     const FleetPlan& plan = fleet[i];
@@ -73,7 +74,8 @@ std::string fleet_text(const std::vector<std::string>& names, const std::vector<
       continue;
     }
     table.row({names[i], plan.variant, std::to_string(plan.poses), fmt::format("{:.4f}", plan.log_det),
-               plan.efficiency ? percent(*plan.efficiency) : "", plan.rho0 ? shown_value(*plan.rho0, "m") : ""});
+               plan.efficiency ? percent(*plan.efficiency) : "", plan.expected ? with_effect_text(*plan.expected) : "",
+               plan.expected ? shown_value(plan.expected->by_noise, "m") : ""});
   }
   return table.text() + (failures.empty() ? "" : "\nNot planned:\n" + failures);
 }
@@ -91,7 +93,7 @@ std::string fleet_json(const std::vector<std::string>& names, const std::vector<
       one["poses"] = fleet[i].poses;
       one["log_det"] = fleet[i].log_det;
       if (fleet[i].efficiency) one["efficiency"] = *fleet[i].efficiency;
-      if (fleet[i].rho0) one["rho0"] = *fleet[i].rho0;
+      if (fleet[i].expected) one["expected_error"] = expected_error_json(*fleet[i].expected);
       one["seconds"] = fleet[i].seconds;
     }
     plans.push_back(std::move(one));

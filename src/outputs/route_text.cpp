@@ -6,6 +6,7 @@
 #include "nearest.hpp"
 #include "posewright/outputs/json_values.hpp"
 #include "posewright/outputs/route.hpp"
+#include "posewright/outputs/stated_error.hpp"
 #include "posewright/outputs/table.hpp"
 #include "posewright/outputs/write_plan.hpp"
 #include "posewright/support/json.hpp"
@@ -17,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json or_null(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
+Json expected_or_null(const std::optional<ExpectedError>& e) { return e ? expected_error_json(*e) : Json(nullptr); }
 
 Json motion_json(const RouteMotion& motion) {
   return {{"from", motion.from},
@@ -177,8 +178,8 @@ std::string route_json(const Route& route, const std::vector<WrittenWith>& files
   json["worth"] = nullptr;
   if (const auto& worth = route.worth)
     json["worth"] = {{"efficiency", worth->efficiency},
-                     {"position_error_planned", or_null(worth->planned)},
-                     {"position_error", or_null(worth->left)}};
+                     {"expected_error_planned", expected_or_null(worth->planned)},
+                     {"expected_error", expected_or_null(worth->left)}};
   return json_text(json);
 }
 
@@ -192,8 +193,8 @@ std::string route_loss(const Route& route) {
   if (!route.worth) return text + ": those left do not identify all parameters";
   text += fmt::format(": {:.1f} % of the plan's information is left", 100 * route.worth->efficiency);
   if (route.worth->planned && route.worth->left)
-    text += fmt::format(", predicted position error {:.3g} mm in place of {:.3g} mm", 1e3 * *route.worth->left,
-                        1e3 * *route.worth->planned);
+    text += fmt::format(", predicted position error {} in place of {}", error_text(*route.worth->left),
+                        shown_value(route.worth->planned->usual().error, "m"));
   return text;
 }
 

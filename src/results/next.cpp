@@ -8,6 +8,7 @@
 #include "document.hpp"
 #include "posewright/outputs/json_values.hpp"
 #include "posewright/outputs/plan.hpp"
+#include "posewright/outputs/stated_error.hpp"
 #include "posewright/outputs/table.hpp"
 #include "posewright/outputs/write_plan.hpp"
 
@@ -33,10 +34,15 @@ std::string shown_coordinate(const NamedValue& v) {
 
 std::string unit_of(const std::string& unit) { return unit == "rad" ? "deg" : unit == "m" ? "mm" : unit; }
 
+/// After the poses that r.expected counts.
+std::string error_of(const NextPoint& point, const NextPoses& r) {
+  return r.expected ? error_text(*r.expected) : length(*point.expected);
+}
+
 std::string now_text(const NextPoint& now, const NextPoses& r) {
   if (!now.expected) return "no error can be predicted without a tip or test poses";
-  std::string text = fmt::format("the predicted error at the {} is {}", where(r), length(*now.expected));
-  if (now.upper) text += fmt::format(", below {} with 95 % confidence", length(*now.upper));
+  std::string text = fmt::format("the predicted error at the {} is {}", where(r), error_of(now, r));
+  if (now.upper) text += fmt::format("; below {} with 95 % confidence", length(*now.upper));
   return text;
 }
 
@@ -62,8 +68,8 @@ std::string gain_text(const NextPoses& r) {
       more == 1 ? fmt::format("ose {}", r.measured + 1)
                 : fmt::format("oses {} {} {}", r.measured + 1, more == 2 ? "and" : "to", r.measured + more);
   const std::string then = length(*r.ahead.back().expected);
-  if (!r.curve.back().expected)
-    return fmt::format(" With p{} the predicted error at the {} is {}.", ids, where(r), then);
+  if (r.verdict == NextVerdict::not_determined)
+    return fmt::format(" With p{} the predicted error at the {} is {}.", ids, where(r), error_of(r.ahead.back(), r));
   return fmt::format(" P{} lower{} it from {} to {}.", ids, more == 1 ? "s" : "", length(*r.curve.back().expected),
                      then);
 }
@@ -191,10 +197,8 @@ std::string next_text(const NextPoses& r) {
   if (r.fitted && r.freedom > 0)
     text += fmt::format("; residuals {:.2f} times the stated noise, {:.0f} degrees of freedom", r.noise, r.freedom);
   text += ".\n";
-  if (r.effect)
-    text += fmt::format(
-        "The residuals contain a smooth effect of {} that no parameter describes; the figures include it.\n",
-        length(r.effect->size));
+  if (r.effect) text += "The residuals contain a smooth effect that no parameter describes; the fit counts it.\n";
+  if (r.expected) text += error_circumstances(*r.expected);
   if (r.effect_below)
     text += fmt::format(
         "The limit includes a missing effect: these readings leave errors up to {} by it possible (95 %).\n",
@@ -221,6 +225,7 @@ Json next_json(const Problem& problem, const NextOptions& options, const NextPos
   json["noise"] = r.fitted ? Json{{"scale", r.noise}, {"freedom", r.freedom}} : Json(nullptr);
   json["unmodelled"] = r.effect ? Json{{"size", r.effect->size}, {"length", r.effect->length}} : Json(nullptr);
   json["unmodelled_below"] = optional(r.effect_below);
+  json["expected_error"] = r.expected ? expected_error_json(*r.expected) : Json(nullptr);
   json["places"] = {{"count", r.places}, {"test_poses", r.places_stated}};
   json["required"] = optional(r.required);
   json["requirements"] = Json::array();

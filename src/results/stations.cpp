@@ -6,6 +6,7 @@
 
 #include "document.hpp"
 #include "posewright/model/variant_columns.hpp"
+#include "posewright/outputs/stated_error.hpp"
 #include "posewright/outputs/table.hpp"
 #include "station_map.hpp"
 
@@ -44,23 +45,28 @@ std::string ended_early(const std::vector<StationRank>& ranks) {
 
 std::string stations_text(const std::vector<StationRank>& ranks) {
   using A = Table::Align;
-  Table table({"", "station", "place [m]", "planned", "parameters", "criterion", "σ", "feasible", "predicted error",
-               "most rejected by"},
-              {A::right, A::left, A::left, A::left, A::right, A::right, A::right, A::right, A::right, A::left});
+  Table table(
+      {"", "station", "place [m]", "planned", "parameters", "criterion", "σ", "feasible", "predicted error",
+       "from noise alone", "most rejected by"},
+      {A::right, A::right, A::left, A::left, A::left, A::right, A::right, A::right, A::right, A::right, A::left});
   int place = 0;
   for (const StationRank& rank : ranks) {
     if (!rank.why_not.empty()) continue;
     table.row({std::to_string(++place), names_of(rank), places_of(rank), rank.in_full ? "in full" : "quickly",
                std::to_string(rank.parameters), fmt::format("{:.4f}", rank.phi),
                rank.sigma_ratio ? fmt::format("{:.2f} ×", *rank.sigma_ratio) : "",
-               fmt::format("{:.1f} %", 100 * rank.feasible_share), rank.rho0 ? shown_value(*rank.rho0, "m") : "",
-               rank.main_rejection});
+               fmt::format("{:.1f} %", 100 * rank.feasible_share),
+               rank.expected ? with_effect_text(*rank.expected) : "",
+               rank.expected ? shown_value(rank.expected->by_noise, "m") : "", rank.main_rejection});
   }
   std::string text = table.text();
   text +=
       "feasible: share of the configurations drawn; where the instrument sees its targets from few of them, views of "
       "the "
       "targets are drawn instead.\n";
+  if (const auto& expected = ranks.front().expected)
+    text +=
+        fmt::format("predicted error: {}, root mean square at {}.\n", origin_text(*expected), places_text(*expected));
   text += ended_early(ranks);
   for (const StationRank& rank : ranks)
     if (!rank.why_not.empty() && !rank.stopped) text += fmt::format("{}: no plan: {}\n", names_of(rank), rank.why_not);
@@ -91,7 +97,7 @@ Json stations_json(const Problem& problem, const StationOptions& options, const 
       json["sigma_ratio"] = rank.sigma_ratio ? Json(*rank.sigma_ratio) : Json(nullptr);
       json["feasible_share"] = rank.feasible_share;
       json["main_rejection"] = rank.main_rejection;
-      json["rho0"] = rank.rho0 ? Json(*rank.rho0) : Json(nullptr);
+      json["expected_error"] = rank.expected ? expected_error_json(*rank.expected) : Json(nullptr);
     }
     list.push_back(json);
   }

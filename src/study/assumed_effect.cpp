@@ -8,8 +8,6 @@
 namespace posewright {
 namespace {
 
-// Best over simulated robots (docs/real-data.md), in units of the noise of one pose.
-constexpr double assumed_size = 2;
 constexpr int assumed_features = 32, assumed_pivots = 120;
 constexpr std::size_t noise_places = 300, pivot_places = 2000, error_places = 1000;
 
@@ -31,7 +29,8 @@ std::shared_ptr<const UnmodelledEffect> effect_of(const Study& study, int thread
     throw CannotDo(
         "criterion bias assumes an effect that moves the tip, but these readings contain no tip position: set design: "
         "truth, or another criterion");
-  const UnmodelledSize size{assumed_size * noise_of_a_pose(along.all(), along.count()), 0.0,
+  // Best over simulated robots, too (docs/real-data.md).
+  const UnmodelledSize size{ExpectedError::usual_of_robots * noise_of_a_pose(along.all(), along.count()), 0.0,
                             UnmodelledSize::assumed_length};
   return std::make_shared<UnmodelledEffect>(*variant.model, size);
 }

@@ -30,37 +30,58 @@ RigidTwists rigid_twists(const Eigen::Isometry3d& X) {
   return T;
 }
 
-/// The readings of all poses: derivatives along fitted columns, nuisance that was left out, and twists of the tips.
+/// Readings of all poses, row below row: derivatives along fitted columns, nuisance that was left out, and twists of
+/// the tips.
 struct Readings {
+  Configurations poses;
+  std::vector<Eigen::Index> first{0};  ///< row of each pose, and behind the last
   Eigen::MatrixXd J, left_out, along;
+
+  Eigen::Index rows_of(std::size_t pose) const { return first[pose + 1] - first[pose]; }
 };
 
-Readings readings_of(const Variant& variant, const Configurations& poses, int threads) {
+Readings readings_of(const Variant& variant, const std::vector<MeasuredPose>& measured, const Configurations& more,
+                     int threads) {
   const IdentificationModel& model = *variant.model;
-  std::vector<int> selected = variant.columns.selected;
-  const auto own = Eigen::Index(selected.size());
+  VariantColumns columns;
+  columns.selected = variant.columns.selected;
+  const auto own = Eigen::Index(columns.selected.size());
   for (const Parameter& p : variant.dropped)
     for (int i = 0; p.role == Role::nuisance && i < int(model.parameters().size()); ++i)
-      if (model.parameters()[std::size_t(i)].name == p.name) selected.push_back(i);
-  const auto labelled = Eigen::Index(selected.size());
+      if (model.parameters()[std::size_t(i)].name == p.name) columns.selected.push_back(i);
+  const auto labelled = Eigen::Index(columns.selected.size());
   for (int tip = 0; tip < model.tips(); ++tip)
-    for (int k = 0; k < tip_twists; ++k) selected.push_back(model.tip_column(tip, k));
-  const BlockArray blocks = build_blocks(model, selected, poses, threads);
-  return {blocks.all().leftCols(own), blocks.all().middleCols(own, labelled - own),
-          blocks.all().rightCols(blocks.columns() - labelled)};
+    for (int k = 0; k < tip_twists; ++k) columns.selected.push_back(model.tip_column(tip, k));
+
+  const BlockArray read = blocks_of(model, columns, measured);
+  const BlockArray all_read = build_blocks(model, columns.selected, more, threads);
+  Readings readings;
+  readings.poses.dimension = more.dimension;
+  for (const MeasuredPose& pose : measured) append(readings.poses, pose.q);
+  for (std::size_t i = 0; i < more.count(); ++i) append(readings.poses, more[i]);
+  for (std::size_t i = 0; i < readings.poses.count(); ++i)
+    readings.first.push_back(readings.first.back() + (i < measured.size() ? read.rows() : all_read.rows()));
+  Eigen::MatrixXd all(readings.first.back(), Eigen::Index(columns.selected.size()));
+  all.topRows(read.all().rows()) = read.all();
+  all.bottomRows(all_read.all().rows()) = all_read.all();
+  readings.J = all.leftCols(own);
+  readings.left_out = all.middleCols(own, labelled - own);
+  readings.along = all.rightCols(all.cols() - labelled);
+  return readings;
 }
 
 /// Motions of base and tool that the readings cannot tell from nuisance parameters, or do not see.
 std::array<bool, rigid_motions> taken_out(const Variant& variant, const IdentificationModel& seen,
-                                          const Configurations& poses, const Readings& readings) {
-  const Eigen::Index nuisance = variant.columns.nuisance, rows = readings.J.rows() / Eigen::Index(poses.count());
+                                          const Readings& readings) {
+  const Eigen::Index nuisance = variant.columns.nuisance;
   const std::size_t own = variant.model->tip_coordinates();
   Eigen::MatrixXd moved = Eigen::MatrixXd::Zero(readings.J.rows(), rigid_motions);
-  for (std::size_t i = 0; i < poses.count(); ++i)
+  for (std::size_t i = 0; i < readings.poses.count(); ++i)
     for (int tip = 0; tip < variant.model->tips(); ++tip) {
-      const Eigen::Index row = Eigen::Index(i) * rows;
-      moved.middleRows(row, rows) += readings.along.block(row, tip * tip_twists, rows, tip_twists) *
-                                     rigid_twists(seen.tool_pose(poses[i].subspan(std::size_t(tip) * own, own)));
+      const Eigen::Index row = readings.first[i], rows = readings.rows_of(i);
+      moved.middleRows(row, rows) +=
+          readings.along.block(row, tip * tip_twists, rows, tip_twists) *
+          rigid_twists(seen.tool_pose(readings.poses[i].subspan(std::size_t(tip) * own, own)));
     }
   Eigen::MatrixXd beside(readings.J.rows(), nuisance + readings.left_out.cols());
   beside << readings.J.leftCols(nuisance), readings.left_out;
@@ -73,9 +94,9 @@ std::array<bool, rigid_motions> taken_out(const Variant& variant, const Identifi
 }
 
 /// Errors of position at all places, one below the other, each times the root of its share of the weight.
-class PlacesThatCount {
+class ErrorsAtPlaces {
  public:
-  PlacesThatCount(const std::vector<TestPoint>& points, const std::vector<TestPlace>& places)
+  ErrorsAtPlaces(const std::vector<TestPoint>& points, const std::vector<TestPlace>& places)
       : points_(points), places_(places) {
     for (const TestPoint& point : points) total_ += point.weight;
   }
@@ -134,115 +155,202 @@ struct EffectColumns {
   Eigen::MatrixXd F;
 };
 
-EffectColumns effect_columns(const std::shared_ptr<const UnmodelledEffect>& effect, const Configurations& poses,
+EffectColumns effect_columns(const std::shared_ptr<const UnmodelledEffect>& effect,
                              const std::vector<TestPlace>& places, const Readings& readings) {
-  const Eigen::MatrixXd at = effect_places(*effect, poses);
-  Eigen::MatrixXd all(at.rows(), at.cols() + Eigen::Index(places.size()));
+  const Eigen::MatrixXd at = effect_places(*effect, readings.poses);
+  Eigen::MatrixXd all(effect->place(places.front().q).size(), at.cols() + Eigen::Index(places.size()));
   for (std::size_t t = 0; t < places.size(); ++t) all.col(Eigen::Index(t)) = effect->place(places[t].q);
-  all.rightCols(at.cols()) = at;
+  if (at.size() > 0) all.rightCols(at.cols()) = at;
   EffectColumns result{EffectFeatures(effect, all, whole_features + int(places.size())), {}};
-  const Eigen::MatrixXd phi = result.features.at(at);
-  const Eigen::Index rows = readings.along.rows() / Eigen::Index(poses.count());
   Eigen::MatrixXd along(readings.along.rows(), Eigen::Index(effect->tips()) * effect->twists());
   for (int tip = 0; tip < effect->tips(); ++tip)
     along.middleCols(tip * effect->twists(), effect->twists()) =
         readings.along.middleCols(tip * tip_twists, effect->twists());
   effect->take_sizes(along);
   result.F = Eigen::MatrixXd::Zero(along.rows(), result.features.columns());
-  for (std::size_t i = 0; i < poses.count(); ++i)
+  if (at.size() == 0) return result;
+  const Eigen::MatrixXd phi = result.features.at(at);
+  for (std::size_t i = 0; i < readings.poses.count(); ++i)
     result.features.add_columns(phi.middleCols(Eigen::Index(i) * effect->tips(), effect->tips()),
-                                along.middleRows(Eigen::Index(i) * rows, rows),
-                                result.F.middleRows(Eigen::Index(i) * rows, rows));
+                                along.middleRows(readings.first[i], readings.rows_of(i)),
+                                result.F.middleRows(readings.first[i], readings.rows_of(i)));
   return result;
 }
 
 /// Mean squares at the places: of the noise, and of an effect of unit size; m².
 struct MeanSquares {
   double noise = 0.0, effect = 0.0, unit = 1.0;  // of `unit` metres
+};
 
-  /// With noise of s and an effect of τ.
-  ExpectedError::WithEffect with(double s_squared, double size_squared) const {
-    return {std::sqrt(size_squared), std::sqrt(s_squared * noise + size_squared / (unit * unit) * effect)};
+/// Sizes that count: of the noise, in units of the stated one, and of the effect, m; squares.
+struct CountedSize {
+  double noise = 1.0, effect = 0.0;
+
+  ExpectedError::WithEffect error(const MeanSquares& squares) const {
+    return {std::sqrt(effect),
+            std::sqrt(noise * squares.noise + effect / (squares.unit * squares.unit) * squares.effect)};
   }
 };
 
 /// Least, found and largest size by the residuals, eq. (69).
-/// @param left  columns of the effect of unit size beside what the parameters take up
-void take_measured(const FittedResiduals& residuals, const Eigen::MatrixXd& left, const MeanSquares& squares,
-                   ExpectedError& result) {
-  const double all = residuals.share * left.squaredNorm(), free = residuals.freedom;
+/// @param left  columns of the effect of `unit` metres beside what the parameters take up
+std::vector<CountedSize> measured_sizes(const FittedResiduals& residuals, const Eigen::MatrixXd& left, double unit) {
+  const double all = left.squaredNorm(), free = residuals.freedom;
   const double of_unit = std::max(0.0, residuals.squares - free) / all;
   const double both =
-      residuals.share * residuals.share *
       (left.rows() < left.cols() ? Eigen::MatrixXd(left * left.transpose()) : Eigen::MatrixXd(left.transpose() * left))
           .squaredNorm();
   const double mean = free + of_unit * all, variance = free + 2 * of_unit * all + of_unit * of_unit * both;
   const double directions = std::min(mean * mean / variance, most_directions);
-  result.size = ExpectedError::Size::measured;
-  result.with.clear();
   const double half = (1 - range_confidence) / 2;
+  std::vector<CountedSize> sizes;
   for (const double factor : {directions / chi_square_quantile(1 - half, directions), 1.0,
                               directions / chi_square_quantile(half, directions)}) {
     const double found = factor * residuals.squares;
-    result.with.push_back(
-        squares.with(std::min(1.0, found / free), std::max(0.0, found - free) / all * squares.unit * squares.unit));
+    sizes.push_back({std::min(1.0, found / free), std::max(0.0, found - free) / all * unit * unit});
   }
-  result.by_noise *= std::min(1.0, std::sqrt(residuals.squares / free));
+  return sizes;
 }
 
 }  // namespace
 
-std::optional<ExpectedError> expected_error(const Configurations& candidates, const Variant& variant,
-                                            const Configurations& poses, const Eigen::MatrixXd& covariance, int threads,
-                                            const std::optional<FittedResiduals>& residuals) {
-  const IdentificationModel& model = *variant.model;
-  ExpectedError result;
-  result.at_test_poses = !variant.test_points.empty();
-  if (model.tips() == 0 || (!result.at_test_poses && model.tips() > 1)) return std::nullopt;
+/// All that does not depend on the number of poses.
+class ErrorsToExpect::Places {
+ public:
+  Places(const Variant& variant, std::vector<TestPoint> points, const std::vector<TestPlace>& places, Readings readings,
+         std::size_t measured)
+      : readings_(std::move(readings)), measured_(measured) {
+    const IdentificationModel& model = *variant.model;
+    said_.at = variant.test_points.empty() ? ExpectedError::At::candidates : ExpectedError::At::test_poses;
+    said_.places = int(points.size());
+    said_.required = variant.problem->design.require.accuracy;
+    said_.noise = noise_of_a_pose(readings_.along.leftCols<3>(), readings_.poses.count());
+    const auto effect = effect_of(variant, said_);
+    unit_ = effect->size().translation;
+    said_.length = effect->size().length;
+    counted_ = variant.effect != nullptr;
+    const auto seen = make_pose_seen(variant);
+    const std::array<bool, rigid_motions> out = taken_out(variant, *seen, readings_);
+    said_.base_out = std::any_of(out.begin(), out.begin() + tip_twists, [](bool o) { return o; });
+    said_.tool_out = std::any_of(out.begin() + tip_twists, out.end(), [](bool o) { return o; });
+    EffectColumns columns = effect_columns(effect, places, readings_);
+    F_ = std::move(columns.F);
+    const ErrorsAtPlaces errors(points, places);
+    Eigen::MatrixXd A = errors.by_parameters(), B = errors.by_effect(columns.features);
+    moves_ = !A.isZero(0);
+    const Eigen::MatrixXd Q = errors.by_frames(*seen, out);
+    A -= Q * (Q.transpose() * A);
+    B -= Q * (Q.transpose() * B);
+    AA_ = A.transpose() * A;
+    AB_ = A.transpose() * B;
+    BB_ = B.squaredNorm();
+    if (said_.size != ExpectedError::Size::of_robots) sizes_ = {{1, unit_ * unit_}};
+    else
+      for (const double times : ExpectedError::robots) sizes_.push_back({1, times * times * unit_ * unit_});
+  }
+
+  bool moves() const { return moves_; }
+  std::size_t poses() const { return readings_.poses.count(); }
+
+  void take_size_of(const FittedResiduals& residuals, const Eigen::MatrixXd& covariance) {
+    if (counted_ || covariance.size() == 0 || !(residuals.freedom >= most_directions)) return;
+    const auto J = readings_.J.topRows(readings_.first[measured_]), F = F_.topRows(J.rows());
+    sizes_ = measured_sizes(residuals, F - J * (covariance * (J.transpose() * F)), unit_);
+    said_.size = ExpectedError::Size::measured;
+  }
+
+  /// Derivatives and effect of readings that an effect which the fit counts makes dependent, as of independent ones.
+  /// @param of_beginnings  so that the first rows are those of the first poses alone
+  void whiten(Eigen::MatrixXd& J, Eigen::MatrixXd& F, bool of_beginnings) const {
+    J = readings_.J;
+    F = F_;
+    if (!counted_) return;
+    if (!of_beginnings) {
+      const IndependentRows independent(F_);
+      independent.apply(J);
+      independent.apply(F);
+      return;
+    }
+    Eigen::MatrixXd covariance = Eigen::MatrixXd::Identity(F.rows(), F.rows());
+    covariance.selfadjointView<Eigen::Lower>().rankUpdate(F_);
+    const Eigen::LLT<Eigen::MatrixXd> root(covariance);
+    root.matrixL().solveInPlace(J);
+    root.matrixL().solveInPlace(F);
+  }
+
+  Eigen::Index rows_before(std::size_t pose) const { return readings_.first[pose]; }
+
+  /// @param JF  Jᵀ F of the poses
+  ExpectedError expected(const Eigen::MatrixXd& covariance, const Eigen::MatrixXd& JF) const {
+    const Eigen::MatrixXd follows = covariance * JF;
+    Eigen::MatrixXd V = covariance;
+    if (counted_) V -= follows * follows.transpose();
+    const MeanSquares squares{V.cwiseProduct(AA_).sum(),
+                              std::max(0.0, follows.cwiseProduct(AA_ * follows - 2 * AB_).sum() + BB_), unit_};
+    ExpectedError e = said_;
+    e.amplification = std::sqrt(squares.effect / 3) / unit_;
+    for (const CountedSize& size : sizes_) e.with.push_back(size.error(squares));
+    e.by_noise = std::sqrt(sizes_[sizes_.size() / 2].noise * squares.noise);
+    return e;
+  }
+
+ private:
+  Readings readings_;
+  std::size_t measured_;
+  ExpectedError said_;  // what is the same for any number of poses
+  bool counted_ = false, moves_ = true;
+  double unit_ = 1.0;
+  std::vector<CountedSize> sizes_;
+  Eigen::MatrixXd F_;
+  Eigen::MatrixXd AA_, AB_;  // AᵀA, AᵀB
+  double BB_ = 0.0;
+};
+
+ErrorsToExpect::ErrorsToExpect(const Configurations& candidates, const Variant& variant,
+                               const std::vector<MeasuredPose>& measured, const Configurations& more, int threads) {
   std::vector<TestPoint> points = variant.test_points;
-  std::vector<TestPlace> test_places = variant.test_places;
-  if (points.empty()) points = test_points_at_candidates(candidates, variant, test_places);
-  result.places = int(points.size());
-  result.required = variant.problem->design.require.accuracy;
+  if (variant.model->tips() == 0 || (points.empty() && variant.model->tips() > 1)) return;
+  std::vector<TestPlace> places = variant.test_places;
+  if (points.empty()) points = test_points_at_candidates(candidates, variant, places);
+  places_ = std::make_unique<Places>(variant, std::move(points), places, readings_of(variant, measured, more, threads),
+                                     measured.size());
+  if (!places_->moves()) places_.reset();
+}
 
-  Readings readings = readings_of(variant, poses, threads);
-  result.noise = noise_of_a_pose(readings.along.leftCols<3>(), poses.count());
-  const auto effect = effect_of(variant, result);
-  result.length = effect->size().length;
-  const auto seen = make_pose_seen(variant);
-  const std::array<bool, rigid_motions> out = taken_out(variant, *seen, poses, readings);
-  result.base_out = std::any_of(out.begin(), out.begin() + tip_twists, [](bool o) { return o; });
-  result.tool_out = std::any_of(out.begin() + tip_twists, out.end(), [](bool o) { return o; });
+ErrorsToExpect::~ErrorsToExpect() = default;
 
-  EffectColumns columns = effect_columns(effect, poses, test_places, readings);
-  if (variant.effect != nullptr) {
-    const IndependentRows independent(columns.F);
-    independent.apply(readings.J);
-    independent.apply(columns.F);
+void ErrorsToExpect::take_size_of(const FittedResiduals& residuals, const Eigen::MatrixXd& covariance) {
+  if (places_ != nullptr) places_->take_size_of(residuals, covariance);
+}
+
+std::vector<std::optional<ExpectedError>> ErrorsToExpect::after_each(
+    const std::vector<Eigen::MatrixXd>& covariances) const {
+  std::vector<std::optional<ExpectedError>> errors(covariances.size());
+  if (places_ == nullptr) return errors;
+  Eigen::MatrixXd J, F;
+  places_->whiten(J, F, true);
+  Eigen::MatrixXd JF = Eigen::MatrixXd::Zero(J.cols(), F.cols());
+  for (std::size_t n = 0; n < covariances.size(); ++n) {
+    if (n > 0) {
+      const Eigen::Index first = places_->rows_before(n - 1), rows = places_->rows_before(n) - first;
+      JF.noalias() += J.middleRows(first, rows).transpose() * F.middleRows(first, rows);
+    }
+    if (covariances[n].size() > 0) errors[n] = places_->expected(covariances[n], JF);
   }
-  const Eigen::MatrixXd follows = covariance * (readings.J.transpose() * columns.F);
-  Eigen::MatrixXd V = covariance;
-  if (variant.effect != nullptr) V -= follows * follows.transpose();
-  const PlacesThatCount places(points, test_places);
-  Eigen::MatrixXd A = places.by_parameters();
-  if (A.isZero(0)) return std::nullopt;
-  const Eigen::MatrixXd Q = places.by_frames(*seen, out);
-  Eigen::MatrixXd E = A * follows - places.by_effect(columns.features);
-  A -= Q * (Q.transpose() * A);
-  E -= Q * (Q.transpose() * E);
+  return errors;
+}
 
-  const MeanSquares squares{(A * V).cwiseProduct(A).sum(), E.squaredNorm(), effect->size().translation};
-  result.by_noise = std::sqrt(squares.noise);
-  result.amplification = std::sqrt(squares.effect / 3) / squares.unit;
-  if (residuals && residuals->freedom >= most_directions && variant.effect == nullptr) {
-    take_measured(*residuals, columns.F - readings.J * follows, squares, result);
-  } else if (result.size != ExpectedError::Size::of_robots) {
-    result.with = {squares.with(1, squares.unit * squares.unit)};
-  } else {
-    for (const double times : ExpectedError::robots)
-      result.with.push_back(squares.with(1, times * times * squares.unit * squares.unit));
-  }
-  return result;
+std::optional<ExpectedError> ErrorsToExpect::after_all(const Eigen::MatrixXd& covariance) const {
+  if (places_ == nullptr) return std::nullopt;
+  Eigen::MatrixXd J, F;
+  places_->whiten(J, F, false);
+  return places_->expected(covariance, J.transpose() * F);
+}
+
+std::optional<ExpectedError> expected_error(const Configurations& candidates, const Variant& variant,
+                                            const Configurations& poses, const Eigen::MatrixXd& covariance,
+                                            int threads) {
+  return ErrorsToExpect(candidates, variant, {}, poses, threads).after_all(covariance);
 }
 
 }  // namespace posewright

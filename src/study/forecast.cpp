@@ -107,10 +107,9 @@ class ForecastOfError::Sum {
     return (R_.diagonal().cwiseAbs().array() > told_at_all * length.array()).all();
   }
 
-  /// Tolerances of the columns, SI.
-  Eigen::VectorXd sigmas() const {
-    const Eigen::MatrixXd inverse = R_.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(m_, m_));
-    return noise_.factor * unit_.cwiseProduct(inverse.rowwise().norm());
+  /// Root of the covariance with the stated noise, SI.
+  Eigen::MatrixXd spread() const {
+    return unit_.asDiagonal() * R_.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(m_, m_));
   }
 
   /// Largest σ over the test poses along (or about) x, y, z.
@@ -205,7 +204,7 @@ std::optional<ForecastSigmas> ForecastOfError::sigmas(const std::vector<PoseRows
   Sum sum(*this, poses);
   for (std::size_t k = 0; k < poses.size(); ++k) sum.add(k);
   if (!sum.determined()) return std::nullopt;
-  result.parameters = sum.sigmas();
+  result.parameters = noise_.factor * sum.spread().rowwise().norm();
   if (!axes || weights_.size() == 0) return result;
   const Eigen::Vector3d along = sum.worst_axes();
   std::copy(along.begin(), along.end(), result.axes.begin());
@@ -216,6 +215,17 @@ std::optional<ForecastSigmas> ForecastOfError::sigmas(const std::vector<PoseRows
   for (std::size_t k = 0; k < poses.size(); ++k) turns.add(k);
   const Eigen::Vector3d about = turns.worst_axes();
   std::copy(about.begin(), about.end(), result.axes.begin() + 3);
+  return result;
+}
+
+std::vector<Eigen::MatrixXd> ForecastOfError::covariance_after_each(const std::vector<PoseRows>& poses) const {
+  std::vector<Eigen::MatrixXd> result;
+  Sum sum(*this, poses);
+  for (std::size_t n = 0; n <= poses.size(); ++n) {
+    if (n > 0) sum.add(n - 1);
+    const Eigen::MatrixXd spread = sum.determined() ? sum.spread() : Eigen::MatrixXd();
+    result.emplace_back(spread * spread.transpose());
+  }
   return result;
 }
 

@@ -92,6 +92,7 @@ class FitSoFar {
     for (const EstimatedValue& value : found.values)
       if (value.sigma) result_.estimates.push_back(value);
     result_.noise = {options_.prior, found.fit.noise_factor};
+    result_.residuals = fitted_residuals(found.fit);
     result_.scale = found.fit.scale;
     result_.freedom = found.fit.left;
     result_.problem = at_estimate(std::move(counting), spec_.name, found.values, options_.data);

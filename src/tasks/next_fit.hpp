@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "posewright/calibration/fit.hpp"
+#include "posewright/study/expected_error.hpp"
 #include "posewright/study/forecast.hpp"
 #include "posewright/tasks/calibrate_problem.hpp"
 #include "posewright/tasks/next_poses.hpp"
@@ -19,6 +20,7 @@ struct NextFit {
   int readings = 0;        ///< single ones that were read
   bool fitted = false;     ///< else at nominal values
   ForecastNoise noise;
+  FittedResiduals residuals;
   double scale = 1.0, freedom = 0.0;  ///< of the residuals, in units of the stated noise
   std::optional<CalibratedEffect> effect{};
   std::vector<EstimatedValue> estimates{};

@@ -14,6 +14,7 @@
 #include "posewright/model/variant_columns.hpp"
 #include "posewright/search/search.hpp"
 #include "posewright/study/error_limits.hpp"
+#include "posewright/study/expected_error.hpp"
 #include "posewright/study/forecast.hpp"
 #include "posewright/support/error.hpp"
 
@@ -163,18 +164,47 @@ class NextRun {
 
   void forecast(const Configurations& chosen) {
     if (result_.places == 0) return;
-    const ForecastOfError error(study_.first(), noise());
-    std::vector<PoseRows> all = known_.rows();
-    for (PoseRows& row : rows_of(study_.first(), chosen, study_.planner.threads)) all.push_back(std::move(row));
-    const auto errors = error.after_each(all);
-    for (std::size_t n = 0; n < errors.size(); ++n)
-      (n <= known_.rows().size() ? result_.curve : result_.ahead).push_back({int(n), errors[n]});
+    const std::size_t measured = known_.rows().size();
+    const Forecast errors = forecast_with(chosen);
+    for (std::size_t n = 0; n < errors.points.size(); ++n)
+      (n <= measured ? result_.curve : result_.ahead).push_back(errors.points[n]);
+    result_.expected = errors.stated[judged() ? measured : errors.stated.size() - 1];
     if (!known_.determined()) return;
     const int ahead = std::min(poses_looked_ahead, int(candidates_.count()));
-    const Configurations three = search_for(parts_for("test_pose"), "test_pose", ahead);
-    all.resize(known_.rows().size());
-    for (PoseRows& row : rows_of(study_.first(), three, study_.planner.threads)) all.push_back(std::move(row));
-    result_.with_three = NextPoint{int(all.size()), error.after_each(all, all.size()).back()};
+    result_.with_three = forecast_with(search_for(parts_for("test_pose"), "test_pose", ahead)).points.back();
+  }
+
+  /// After 0, 1, … of the measured poses and these.
+  struct Forecast {
+    std::vector<std::optional<ExpectedError>> stated;
+    std::vector<NextPoint> points;
+  };
+
+  Forecast forecast_with(const Configurations& more) const {
+    const NextFit& fit = known_.fit();
+    const int threads = study_.planner.threads;
+    std::vector<PoseRows> all = known_.rows();
+    for (PoseRows& row : rows_of(study_.first(), more, threads)) all.push_back(std::move(row));
+    const ForecastOfError forecast(study_.first(), noise());
+    const std::vector<Eigen::MatrixXd> covariances = forecast.covariance_after_each(all);
+    ErrorsToExpect errors(candidates_, study_.first(), fit.poses, more, threads);
+    if (judged()) errors.take_size_of(fit.residuals, covariances[fit.poses.size()]);
+    Forecast result{errors.after_each(covariances), {}};
+    const bool no_tip = std::none_of(result.stated.begin(), result.stated.end(), [](const auto& e) { return !!e; });
+    const auto by_noise = no_tip ? forecast.after_each(all) : std::vector<std::optional<double>>();
+    for (std::size_t n = 0; n < result.stated.size(); ++n) {
+      std::optional<ExpectedError>& e = result.stated[n];
+      NextPoint point{int(n)};
+      if (e) {
+        e->required = result_.required;
+        if (!known_.places_stated()) e->at = ExpectedError::At::candidates;
+        point.expected = e->usual().error;
+      } else if (no_tip) {
+        point.expected = by_noise[n];
+      }
+      result.points.push_back(point);
+    }
+    return result;
   }
 
   void fill_poses(const Configurations& chosen) {

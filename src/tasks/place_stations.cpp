@@ -10,6 +10,7 @@
 #include "posewright/cell/cell.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/model/placement.hpp"
+#include "posewright/outputs/stated_error.hpp"
 #include "posewright/problem/design_keys.hpp"
 #include "posewright/study/study.hpp"
 #include "posewright/support/bytes.hpp"
@@ -92,9 +93,8 @@ std::string bytes_of(const StationRank& rank) {
   bytes.put(rank.main_rejection);
   bytes.put(rank.parameters);
   bytes.put(rank.stopped);
-  bytes.put(rank.rho0.has_value());
-  for (const double value : {rank.phi, rank.criterion_value, rank.feasible_share, rank.rho0.value_or(0.0)})
-    bytes.put(value);
+  for (const double value : {rank.phi, rank.criterion_value, rank.feasible_share}) bytes.put(value);
+  put(bytes, rank.expected);
   return bytes.take();
 }
 
@@ -106,9 +106,8 @@ StationRank rank_in(std::string_view from, std::vector<StationSpec> stations) {
   bytes.get(rank.main_rejection);
   bytes.get(rank.parameters);
   bytes.get(rank.stopped);
-  const bool has_rho0 = bytes.get<bool>();
   for (double* value : {&rank.phi, &rank.criterion_value, &rank.feasible_share}) bytes.get(*value);
-  if (has_rho0) rank.rho0 = bytes.get<double>();
+  rank.expected = expected_error_in(bytes);
   return rank;
 }
 
@@ -271,7 +270,7 @@ class Ranking {
         rank.parameters += p.sigma.has_value() && p.label.role == Role::interest;
       rank.criterion_value = plan.criterion_value;
       rank.phi = determinant_ ? plan.log_det : plan.criterion_value;
-      rank.rho0 = plan.rho0;
+      rank.expected = plan.expected;
       long most = 0, passed_over = 0;
       for (const auto& [reason, count] : plan.statistics.rejected)
         if (reason == passed_over_reason) {

@@ -1,5 +1,6 @@
 #include "posewright/tasks/plan_fleet.hpp"
 
+#include "posewright/outputs/stated_error.hpp"
 #include "posewright/support/bytes.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/tasks.hpp"
@@ -13,9 +14,8 @@ std::string bytes_of(const FleetPlan& plan) {
   bytes.put(plan.variant);
   bytes.put(plan.poses);
   bytes.put(plan.efficiency.has_value());
-  bytes.put(plan.rho0.has_value());
-  for (const double value : {plan.log_det, plan.efficiency.value_or(0.0), plan.rho0.value_or(0.0), plan.seconds})
-    bytes.put(value);
+  for (const double value : {plan.log_det, plan.efficiency.value_or(0.0), plan.seconds}) bytes.put(value);
+  put(bytes, plan.expected);
   bytes.put(plan.rendered);
   return bytes.take();
 }
@@ -26,12 +26,12 @@ FleetPlan fleet_plan_in(std::string_view from) {
   bytes.get(plan.why_not);
   bytes.get(plan.variant);
   bytes.get(plan.poses);
-  const bool has_efficiency = bytes.get<bool>(), has_rho0 = bytes.get<bool>();
+  const bool has_efficiency = bytes.get<bool>();
   bytes.get(plan.log_det);
-  const auto efficiency = bytes.get<double>(), rho0 = bytes.get<double>();
+  const auto efficiency = bytes.get<double>();
   if (has_efficiency) plan.efficiency = efficiency;
-  if (has_rho0) plan.rho0 = rho0;
   bytes.get(plan.seconds);
+  plan.expected = expected_error_in(bytes);
   bytes.get(plan.rendered);
   return plan;
 }
@@ -54,7 +54,7 @@ std::vector<FleetPlan> plan_fleet(const std::vector<Problem>& problems, const Ru
       result.poses = int(plan.poses.size());
       result.log_det = plan.log_det;
       if (plan.certificate.proved) result.efficiency = plan.certificate.efficiency;
-      result.rho0 = plan.rho0;
+      result.expected = plan.expected;
       result.seconds = plan.statistics.seconds;
       result.rendered = render(plan, i);
     } catch (const InputError& error) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "posewright/study/expected_error.hpp"
 #include "posewright/study/judgement.hpp"
 #include "posewright/study/study.hpp"
 #include "posewright/support/error.hpp"
@@ -52,7 +53,17 @@ std::optional<RouteWorth> worth_of_route(const Problem& problem, const PoseList&
     const VariantColumns& columns = study.first().columns;
     const auto interest = double(columns.parameters.size()) - columns.nuisance;
     const double gain = left.evaluations.front().log_det - planned.evaluations.front().log_det;
-    return RouteWorth{std::exp(gain / interest), planned.rho0, left.rho0};
+    RouteWorth worth{std::exp(gain / interest)};
+    // The list is all that is known of the workspace: without test poses no place stands apart from it.
+    if (study.first().test_points.empty()) return worth;
+    const auto expected = [&](const PoseList& list, const Judgement& judgement) {
+      return expected_error(study.configurations, study.first(),
+                            with_measured(study, configurations_of(list, dimension)),
+                            judgement.evaluations.front().covariance, study.planner.threads);
+    };
+    worth.planned = expected(all, planned);
+    worth.left = expected(kept, left);
+    return worth;
   } catch (const CannotDo&) {
     return std::nullopt;
   }

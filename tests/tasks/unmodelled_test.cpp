@@ -175,7 +175,7 @@ TEST_F(UnmodelledEffects, PlanWithoutOneTellsWhatAPlainFitWouldMakeOfOne) {
   const Plan plan = judged(problem("", "{variant: short, poses: 8, " + places), eight);
   ASSERT_TRUE(plan.expected);
   const ExpectedError& r = *plan.expected;
-  EXPECT_TRUE(r.at_test_poses);
+  EXPECT_EQ(r.at, ExpectedError::At::test_poses);
   EXPECT_EQ(r.places, 2);
   EXPECT_FALSE(r.base_out || r.tool_out);
   EXPECT_NEAR(r.by_noise / *plan.rho0, 1, 1e-9);
@@ -319,7 +319,7 @@ TEST_F(UnmodelledEffects, PlanOfFewPosesSaysThatItReliesOnTheModel) {
   const Problem p = problem("", "{variant: short, poses: 2}");
   const Plan plan = judged(p, {{0.2, 1.1}, {0.3, 1.2}});
   ASSERT_TRUE(plan.expected);
-  EXPECT_FALSE(plan.expected->at_test_poses);
+  EXPECT_EQ(plan.expected->at, ExpectedError::At::candidates);
   EXPECT_GT(plan.expected->amplification, 1.5);
   EXPECT_THAT(plan_summary(plan), HasSubstr("relies on a complete model"));
   EXPECT_THAT(plan_summary(judged(p, eight)), testing::Not(HasSubstr("relies on a complete model")));

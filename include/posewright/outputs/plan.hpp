@@ -200,16 +200,19 @@ struct PlannedEffect {
 struct ExpectedError {
   /// Sizes of an effect that robots have, in units of the noise of a pose: least, usual, largest (docs/real-data.md).
   static constexpr std::array<double, 3> robots = {0.5, 2, 5};
+  static constexpr double usual_of_robots = robots[1];
+  /// Places that count: the problem's, candidates, or drawn between the least and largest measured value of each joint.
+  enum class At { test_poses, candidates, measured_ranges };
   /// Origin of the size: the table of robots, the variant's `unmodelled`, a calibration.
   enum class Size { of_robots, counted, measured };
   struct WithEffect {
     double size = 0.0;   ///< 1σ along each axis, m
     double error = 0.0;  ///< m
   };
-  double noise = 0.0;          ///< of one pose's readings as a displacement of the tip, 1σ along each axis, m
-  double length = 0.0;         ///< over which the effect changes, rad
-  bool at_test_poses = false;  ///< else at candidates
-  int places = 0;              ///< how many of them
+  double noise = 0.0;   ///< of one pose's readings as a displacement of the tip, 1σ along each axis, m
+  double length = 0.0;  ///< over which the effect changes, rad
+  At at = At::candidates;
+  int places = 0;                           ///< how many of them
   bool base_out = false, tool_out = false;  ///< whether the best one is taken out
   double by_noise = 0.0;                    ///< from noise alone, m
   double amplification = 0.0;               ///< of the effect by the estimate; 1: the error equals the unfitted effect

@@ -36,8 +36,8 @@ inline constexpr double usual_percent = 10.0;
 
 /// Efficiency of the poses of a route against all poses of its plan.
 struct RouteWorth {
-  double efficiency = 0.0;              ///< of the information, on the geometric mean of the parameters
-  std::optional<double> planned, left;  ///< m, predicted position error after calibration
+  double efficiency = 0.0;  ///< of the information, on the geometric mean of the parameters
+  std::optional<ExpectedError> planned{}, left{};
 };
 
 /// The order of measurement and the motions between the poses.

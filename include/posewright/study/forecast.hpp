@@ -46,6 +46,10 @@ class ForecastOfError {
   /// poses; none where these do not determine all parameters. One factorisation serves all.
   std::vector<std::optional<double>> after_each(const std::vector<PoseRows>& poses, std::size_t from = 0) const;
 
+  /// Covariance of the parameters, SI, with the stated noise, after 0, 1, … poses; empty where these do not determine
+  /// all.
+  std::vector<Eigen::MatrixXd> covariance_after_each(const std::vector<PoseRows>& poses) const;
+
   /// After all poses; none where these do not determine all parameters.
   /// @param axes  asked for: costs as much as after_each once more for the turns
   std::optional<ForecastSigmas> sigmas(const std::vector<PoseRows>& poses, bool axes) const;

@@ -50,7 +50,7 @@ enum class NextVerdict {
 /// Error at the test poses after so many poses, m; none: these poses do not tell all parameters.
 struct NextPoint {
   int poses = 0;
-  std::optional<double> expected{};
+  std::optional<double> expected{};  ///< ExpectedError::usual(); where the readings tell of no tip, ρ0
   std::optional<double> upper{};  ///< 95 %, whatever effect the residuals leave possible; of all measured poses alone
 };
 
@@ -59,8 +59,9 @@ struct NextRequirement {
   std::string what;  ///< "accuracy", "position x" … "rotation z", "sigma NAME"
   std::string unit;
   double required = 0.0;
-  std::optional<double> expected{};  ///< ρ0; 1σ along or about the axis at the worst test pose; σ of the parameter
-  std::optional<double> upper{};     ///< 95 %, the compared value
+  std::optional<double>
+      expected{};  ///< NextPoint::expected; 1σ along or about the axis at the worst test pose; σ of the parameter
+  std::optional<double> upper{};  ///< 95 %, the compared value
 
   bool met() const { return upper && *upper <= required; }
 };
@@ -78,6 +79,8 @@ struct NextPoses {
   std::optional<CalibratedEffect> effect{};  ///< smooth, that the residuals show and the fit counts
   std::optional<double> effect_below{};   ///< error by a missing effect, below it with 95 % confidence, m; none: no fit
   std::vector<EstimatedValue> estimates;  ///< of the parameters, if there was a fit
+  /// After the measured poses; before a fit after those to be measured next, too.
+  std::optional<ExpectedError> expected{};
   int places = 0;                         ///< where accuracy counts
   bool places_stated = false;             ///< test poses of the problem; else places through the workspace
   std::vector<NextPoint> curve;           ///< of the measured poses, by today's estimate; the last: all

@@ -22,7 +22,7 @@ struct StationRank {
   std::optional<double> sigma_ratio;
   double feasible_share = 0.0;  ///< of the configurations drawn
   std::string main_rejection;   ///< why most of the others are not feasible
-  std::optional<double> rho0;   ///< predicted position error at the test poses, m
+  std::optional<ExpectedError> expected{};
 };
 
 struct StationOptions {

@@ -16,7 +16,7 @@ struct FleetPlan {
   int poses = 0;
   double log_det = 0.0;
   std::optional<double> efficiency;  ///< at least, of the best plan of its candidates; none: no bound
-  std::optional<double> rho0;        ///< predicted position error at the test poses, m
+  std::optional<ExpectedError> expected{};
   double seconds = 0.0;
   std::string rendered;  ///< result of `render`
 };

@@ -1,3 +1,4 @@
+import { usualError } from './expected_error.js';
 import { number, percent, quantity } from '../text/units.js';
 
 /**
@@ -33,6 +34,9 @@ export const counts = (ranking) => ({
 /** Places that can be compared with this one. @param {any[]} ranking @param {any} rank */
 const alike = (ranking, rank) => ranking.filter((r) => !r.why_not && r.in_full === rank.in_full && r.parameters === rank.parameters);
 
+/** @param {any} rank */
+const errorOf = (rank) => (rank.expected_error ? usualError(rank.expected_error) : null);
+
 /** @param {any} s stations.json @returns {Value[]} */
 export function valuesOf(s) {
   const good = s.ranking.filter((r) => !r.why_not);
@@ -41,8 +45,8 @@ export function valuesOf(s) {
       ? { name: 'σ against the best place', of: (r) => sigmaRatio(s.ranking, r), shown: (v) => `${number(v, 4)} ×`, least: true, span: 0.1 }
       : { name: `criterion ${s.criterion}`, of: (r) => r.phi, shown: (v) => number(v, 5), span: 0.1 },
     { name: 'share of feasible configurations', of: (r) => r.feasible_share, shown: (v) => percent(v), span: 0.1 },
-    ...(good.some((r) => r.rho0 !== null)
-      ? [{ name: 'position error', of: (r) => r.rho0, shown: (v) => quantity(v, 'm', 3), least: true, span: 0.1 }]
+    ...(good.some((r) => r.expected_error !== null)
+      ? [{ name: 'position error', of: errorOf, shown: (v) => quantity(v, 'm', 3), least: true, span: 0.1 }]
       : []),
   ];
 }

@@ -42,7 +42,7 @@ function tiles(n) {
 function warnings(n) {
   return [
     n.unmodelled &&
-      `The residuals contain a smooth effect of ${quantity(n.unmodelled.size, 'm', 3)} that no parameter describes; the figures include it.`,
+      `The residuals contain a smooth effect of ${quantity(n.unmodelled.size, 'm', 3)} that no parameter describes; the fit counts it.`,
     n.interrupted && 'Stopped early.',
     ...(n.notes ?? []),
   ].filter(Boolean);

@@ -2,6 +2,7 @@ import { headingOf } from '../page.js';
 import { h, section, table } from '../dom.js';
 import { inShort, tile } from '../parts/tiles.js';
 import { commonFacts, repeatSection } from '../parts/repeat.js';
+import { usualError } from '../numerics/expected_error.js';
 import { counts, isDeterminant, isLookedAt, sigmaRatio } from '../numerics/stations.js';
 import { stationMap } from '../plots/station_map.js';
 import { shell, shellFile } from '../sections/reproduce.js';
@@ -30,7 +31,9 @@ function tiles(s) {
             ? `${s.ranking.length - planned.length} do not`
             : `${planned.filter((r) => r.in_full).length} planned in full`,
         ),
-    best.rho0 !== null ? tile(quantity(best.rho0, 'm', 3), 'position error', 'predicted from the best place') : null,
+    best.expected_error !== null
+      ? tile(quantity(usualError(best.expected_error), 'm', 3), 'position error', 'predicted from the best place')
+      : null,
     ratio.length > 1
       ? tile(`${number(Math.max(...ratio), 4)} ×`, 'σ from the worst', `of the ${ratio.length} planned in full, against the best`)
       : null,
@@ -41,7 +44,7 @@ function tiles(s) {
 /** @param {any} s */
 function rankingSection(s) {
   const planned = s.ranking.filter((r) => !r.why_not);
-  const withError = planned.some((r) => r.rho0 !== null);
+  const withError = planned.some((r) => r.expected_error !== null);
   const header = [
     '#',
     'station',
@@ -63,7 +66,7 @@ function rankingSection(s) {
     number(r.phi, 5),
     isDeterminant(s) ? `${number(sigmaRatio(s.ranking, r), 4)} ×` : '–',
     percent(r.feasible_share),
-    ...(withError ? [quantity(r.rho0, 'm')] : []),
+    ...(withError ? [r.expected_error ? quantity(usualError(r.expected_error), 'm') : '–'] : []),
     r.main_rejection,
   ]);
   const refused = s.ranking.filter((r) => r.why_not && isLookedAt(r));

@@ -1,3 +1,4 @@
+import { usualError } from '../numerics/expected_error.js';
 import { inShort, inWords, tile } from '../parts/tiles.js';
 import { duration, percentDown, quantity } from '../text/units.js';
 import * as say from '../text/sentences.js';
@@ -30,7 +31,7 @@ function tiles(list) {
     ),
     plan.expected_error
       ? tile(
-          quantity(plan.expected_error.with[plan.expected_error.with.length >> 1].error, 'm', 3),
+          quantity(usualError(plan.expected_error), 'm', 3),
           'position error',
           `expected after calibration, ${quantity(plan.expected_error.by_noise, 'm', 3)} from noise alone`,
         )

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Does what `posewright next` says when it stops hold?  stop_rule.py PROGRAM OUT.jsonl [--robots 1000]
 
-Each drawn robot is measured in the loop: next poses, readings of the true robot with noise, next poses, … until `next` says stop.
+Each drawn robot is measured in the loop: next poses, readings of the true robot with noise, next poses, … until `next` says that
+the required error is reached, or 40 poses. A flat curve ends no loop here, so that *reached* is tested with more poses, too.
 Readings and the true error at the test poses after compensation are computed by a second program of the robot's definition
 (tests/oracle), which knows nothing of the fit. One line a robot is appended to OUT.jsonl; started again, it goes on where it was.
 With --effects each robot also misses by an effect that the model lacks, so many times the noise in turn: gears (sines of each
@@ -30,7 +31,8 @@ except ImportError as error:
 
 EXAMPLE = SOURCE / "examples" / "kr270"
 VARIANT = "geometric"
-TEST_POSES, CANDIDATES, FIRST, EACH, MOST = 20, 500, 6, 2, 60
+TEST_POSES, CANDIDATES, FIRST, MOST = 20, 500, 6, 40
+FEW, EACH, LATER = 20, 2, 5  # poses of a step, up to FEW measured and beyond
 REQUIRED = (0.08e-3, 0.12e-3, 0.2e-3, 0.4e-3, 0.8e-3)  # m, in turn; the last two with effects alone
 NOISE = 0.1e-3 / math.sqrt(3)  # m: the problem's, three repeats
 LOWER, UPPER = np.radians([-100, -110, -60, -150, -90, -200]), np.radians([100, -30, 60, 150, 90, 200])
@@ -61,7 +63,7 @@ class DrawnRobot:
         problem = yaml.safe_load(file.read_text())
         self.experiment = Experiment(problem, file.parent, problem["variants"][VARIANT])
         self.names, self.places = self.experiment.robot.coordinates, places
-        self.chance, self.noise = np.random.default_rng([seed, 21]), noise
+        self.chance, self.noise = np.random.default_rng([seed, 22]), noise
         self.true = dict(self.experiment.nominal)
         own = self.experiment.own_names
         for name in problem["variants"][VARIANT]["parameters"]:
@@ -157,28 +159,32 @@ def run_robot(program, file, places, seed, noise_factor, effects, fitted):
     robot.draw_effect(size * NOISE, fitted)
     targets = robot.experiment.instrument.targets
     with tempfile.TemporaryDirectory(dir=file.parent) as scratch:
-        data, steps = pathlib.Path(scratch) / "measured.csv", []
+        data, count, flat = pathlib.Path(scratch) / "measured.csv", FIRST, None
         with open(data, "w") as out:
             header = ["id"] + [f"{n} [rad]" for n in robot.names] + [f"{t}.{a} [m]" for t in targets for a in "xyz"]
             out.write(",".join(header) + "\n")
         while True:
-            done = subprocess.run([program, "next", file, "--data", data, "-k", str(EACH if steps else FIRST), "--required",
+            done = subprocess.run([program, "next", file, "--data", data, "-k", str(count), "--required",
                                    f"{1e3 * required} mm", "--json", "--quiet", "--threads", "1", "--seed", str(seed)],
                                   capture_output=True, text=True)
             if done.returncode != 0:
                 raise RuntimeError(f"robot {seed}: {done.stderr}")
             said = json.loads(done.stdout)
-            steps.append(said["verdict"])
-            if said["stop"] or said["measured"]["poses"] >= MOST:
+            measured = said["measured"]["poses"]
+            if said["verdict"] == "flat" and flat is None:
+                flat = measured
+            if said["verdict"] == "reached" or measured >= MOST:
                 break
             with open(data, "a") as out:
                 for pose in said["poses"]:
                     values = [*pose["configuration"], *robot.read(pose["configuration"])]
                     out.write(",".join([str(pose["id"]), *map(repr, map(float, values))]) + "\n")
+            measured += len(said["poses"])
+            count = EACH if measured < FEW else max(1, min(LATER, MOST - measured))
     now = said["curve"][-1]
     return {"robot": seed, "verdict": said["verdict"], "poses": said["measured"]["poses"], "required": required,
             "expected": now["expected"], "upper": now["upper"], "true": robot.error(said["estimates"]),
-            "effect": said["unmodelled"] is not None, "size": size}
+            "effect": said["unmodelled"] is not None, "size": size, "flat": flat}
 
 
 def known(out):
@@ -232,7 +238,7 @@ def held_for(rows, size):
     print(f"effect of {size:g} times the noise, {len(rows)} robots; {len(claims)} times 'error <= required', false {false} times "
           f"({100 * false / max(1, len(rows)):.1f} % of the robots)"
           + (f", at {poses[0]} to {poses[-1]} poses, median {poses[len(poses) // 2]}" if poses else "")
-          + f"; true error below the stated limit: {100 * below / max(1, len(rows)):.1f} %")
+          + f"; flat before that: {sum(row['flat'] is not None for row in rows)}; true error below the stated limit: {100 * below / max(1, len(rows)):.1f} %")
     return false <= 0.05 * len(rows) + 3 * math.sqrt(0.05 * 0.95 * len(rows))
 
 

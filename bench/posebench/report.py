@@ -125,7 +125,7 @@ def page(rows, notes, sets):
 STORED = "AlgDesign, skpr and OptimalDesign are R packages that Debian does not have; their stored results stand in. FIGAROH's selection is restated."
 
 
-LINES = (("posewright-bias", "posewright, bias", "#1f6f8b"), ("posewright-o1", "posewright, o1", "#7a8796"), ("farthest-point", "farthest point", "#5b8c2a"))
+LINES = (("posewright", "posewright, default", "#1f6f8b"), ("posewright-o1", "posewright, o1", "#7a8796"), ("farthest-point", "farthest point", "#5b8c2a"))
 
 
 class Panel:

@@ -66,7 +66,8 @@ class Prediction:
         return np.sqrt(self.noise + (times * self.pose) ** 2 * self.effect)
 
     def measured(self, y):
-        """Least, found and largest error by the residuals, and the factors of the noise."""
+        """Least, found and largest error by the residuals, and the factors of the noise; as before measuring where the residuals
+        suggest a size beyond the table, but leave all of its sizes possible."""
         r = y - self.U @ (self.U.T @ y)
         squares, free = r @ r, len(r) - self.m
         if free == 0:
@@ -75,6 +76,9 @@ class Prediction:
         d = (free + size * self.left) ** 2 / (free + 2 * size * self.left + size ** 2 * self.both)
         d = min(d, DIRECTIONS)
         found = [squares * d / chi_square(1.96, d), squares, squares * d / chi_square(-1.96, d)]
+        least, middle, largest = (np.sqrt(max(0, q - free) / self.left) / self.pose for q in found)
+        if least <= LEAST and min(middle, largest) >= LARGEST:
+            return [(self.error(times), 1) for times in (LEAST, USUAL, LARGEST)]
         return [(np.sqrt(min(1, q / free) * self.noise + max(0, q - free) / self.left * self.effect), np.sqrt(min(1, q / free)))
                 for q in found]
 

@@ -36,7 +36,11 @@ std::string unit_of(const std::string& unit) { return unit == "rad" ? "deg" : un
 
 /// After the poses that r.expected counts.
 std::string error_of(const NextPoint& point, const NextPoses& r) {
-  return r.expected ? error_text(*r.expected) : length(*point.expected);
+  if (!r.expected) return length(*point.expected);
+  // The limit takes the place of the range.
+  if (!point.upper) return error_text(*r.expected);
+  return fmt::format("{} {}, {} from noise alone", length(r.expected->usual().error), origin_text(*r.expected),
+                     length(r.expected->by_noise));
 }
 
 std::string now_text(const NextPoint& now, const NextPoses& r) {

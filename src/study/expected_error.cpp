@@ -220,7 +220,6 @@ class ErrorsToExpect::Places {
   Places(const Variant& variant, std::vector<TestPoint> points, const std::vector<TestPlace>& places, Readings readings,
          std::size_t measured)
       : readings_(std::move(readings)), measured_(measured) {
-    const IdentificationModel& model = *variant.model;
     said_.at = variant.test_points.empty() ? ExpectedError::At::candidates : ExpectedError::At::test_poses;
     said_.places = int(points.size());
     said_.required = variant.problem->design.require.accuracy;
@@ -255,7 +254,13 @@ class ErrorsToExpect::Places {
   void take_size_of(const FittedResiduals& residuals, const Eigen::MatrixXd& covariance) {
     if (counted_ || covariance.size() == 0 || !(residuals.freedom >= most_directions)) return;
     const auto J = readings_.J.topRows(readings_.first[measured_]), F = F_.topRows(J.rows());
-    sizes_ = measured_sizes(residuals, F - J * (covariance * (J.transpose() * F)), unit_);
+    std::vector<CountedSize> found = measured_sizes(residuals, F - J * (covariance * (J.transpose() * F)), unit_);
+    // A size beyond those of robots that so few residuals give, while all of these remain possible, is chance.
+    const auto square = [&](double times) { return std::pow(times * said_.noise, 2); };
+    if (found[0].effect <= square(ExpectedError::robots.front()) &&
+        std::min(found[1].effect, found[2].effect) >= square(ExpectedError::robots.back()))
+      return;
+    sizes_ = std::move(found);
     said_.size = ExpectedError::Size::measured;
   }
 

@@ -80,7 +80,8 @@ class SampleTable {
       return;
     }
     for (const double v : X->translation()) row.cells.emplace_back(fmt::format("{}", v));
-    for (const double v : Eigen::Quaterniond(X->linear()).coeffs()) row.cells.emplace_back(fmt::format("{}", v));
+    const Eigen::Quaterniond q(X->linear());
+    for (const double v : q.coeffs()) row.cells.emplace_back(fmt::format("{}", v));
   }
 };
 

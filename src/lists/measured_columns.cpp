@@ -22,17 +22,13 @@ constexpr std::array<const char*, 3> point_axes = {".x", ".y", ".z"};
 // What bends by more than this share of its size is another body, or its points are mixed up.
 constexpr double largest_deformation = 0.05;
 
-/// Samples of hand-eye calibration, else CSV.
-PoseTable table_of(const std::string& text, const std::string& file) {
-  if (std::optional<Samples> samples = read_samples(text, file)) return std::move(samples->table);
-  return read_csv_table(text, file);
-}
-
 }  // namespace
 
 MeasuredColumns::MeasuredColumns(const std::string& bytes, const std::string& file, const MeasurementSpec& measurement,
                                  const IdentificationModel& model)
-    : file_(file), model_(model), table_(table_of(bytes.starts_with("\xef\xbb\xbf") ? bytes.substr(3) : bytes, file)) {
+    : file_(file),
+      model_(model),
+      table_(samples_or_csv(bytes.starts_with("\xef\xbb\xbf") ? bytes.substr(3) : bytes, file)) {
   index_columns();
   if (InstrumentView view = view_of(measurement); view.fits_pose) markers_ = std::move(view.targets);
   find_readings();

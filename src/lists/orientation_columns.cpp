@@ -22,6 +22,12 @@ std::vector<std::string> columns_of(const std::string& prefix, std::initializer_
 
 }  // namespace
 
+Eigen::Matrix3d rotation_of_quaternion(const Eigen::Vector4d& quaternion, const SourcePlace& place) {
+  if (std::abs(quaternion.norm() - 1) > unit_slack)
+    throw InputError(place, fmt::format("the quaternion has length {:.6g}", quaternion.norm()), "1 is expected");
+  return Eigen::Quaterniond(Eigen::Vector4d(quaternion.normalized())).toRotationMatrix();
+}
+
 OrientationColumns::OrientationColumns(const std::string& prefix, const std::vector<std::string>& names,
                                        const SourcePlace& header) {
   const auto has = [&](const std::string& name) { return std::find(names.begin(), names.end(), name) != names.end(); };
@@ -51,9 +57,7 @@ std::optional<Eigen::Matrix3d> OrientationColumns::rotation(
   if (!v.allFinite()) return std::nullopt;
   if (form_.kind == OrientationForm::angles) return form_.turns.rotation(v);
   if (!quaternion) return rotation_by(v);
-  if (std::abs(v.norm() - 1) > unit_slack)
-    throw InputError(row, fmt::format("the quaternion has length {:.6g}", v.norm()), "1 is expected");
-  return Eigen::Quaterniond(Eigen::Vector4d(v.normalized())).toRotationMatrix();
+  return rotation_of_quaternion(v, row);
 }
 
 }  // namespace posewright

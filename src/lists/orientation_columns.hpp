@@ -11,6 +11,9 @@
 
 namespace posewright {
 
+/// Throws InputError at this place if the quaternion (x, y, z, w) has not length 1.
+Eigen::Matrix3d rotation_of_quaternion(const Eigen::Vector4d& quaternion, const SourcePlace& place);
+
 /// Columns of a file that have an orientation: PREFIX.rx, .ry, .rz (rotation vector), PREFIX.qx, .qy, .qz, .qw (unit
 /// quaternion), or three angles in the order of their turns, PREFIX.fixed_xyz.1, .2, .3 or PREFIX.moving_zyz.1, .2, .3.
 class OrientationColumns {

@@ -8,9 +8,9 @@
 #include <limits>
 #include <numbers>
 
+#include "cell_in_si.hpp"
 #include "posewright/lists/samples.hpp"
 #include "posewright/outputs/pose_formats.hpp"
-#include "posewright/problem/units.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/file.hpp"
 #include "robot_columns.hpp"
@@ -19,16 +19,6 @@ namespace posewright {
 namespace {
 
 constexpr std::uintmax_t list_size_limit = 100'000'000;
-
-double in_si(const std::string& cell, const std::string& unit, const Coordinate& c, const SourcePlace& place) {
-  const Quantity own = c.unit == "m" ? Quantity::length : Quantity::angle;
-  try {
-    return parse_value(unit.empty() ? cell : cell + " " + unit, own);
-  } catch (const InputError&) {
-    throw InputError(place, fmt::format("'{}' of '{}' is not a value", cell.substr(0, 40), c.name),
-                     "a number; in the header, a unit: " + allowed_units({own}));
-  }
-}
 
 double temperature_of(const std::string& cell, const Coordinate& c, const SourcePlace& place) {
   constexpr double coldest = -100, hottest = 300;  // degrees Celsius, of a robot that somebody measures
@@ -158,7 +148,8 @@ class ColumnMap {
 
   static double value_of(const PoseCell& cell, const std::string& unit, const Coordinate& c, const SourcePlace& place) {
     if (const auto* text = std::get_if<std::string>(&cell))
-      return c.choice() ? of_label(*text, c, place) : in_si(*text, unit, c, place);
+      return c.choice() ? of_label(*text, c, place)
+                        : cell_in_si(*text, unit, c.name, c.unit == "m" ? Quantity::length : Quantity::angle, place);
     const double value = std::get<double>(cell);
     if (c.choice()) return of_label(fmt::format("{}", value), c, place);
     if (unit != degrees_or_millimetres) return value;
@@ -205,8 +196,7 @@ class ColumnMap {
 PoseTable recognised(const std::string& text, const std::string& file) {
   const auto first = text.find_first_not_of(" \t\r\n");
   if (first != std::string::npos && text[first] == '{') return table_of(parse_sequence(text, file));
-  if (std::optional<Samples> samples = read_samples(text, file)) return std::move(samples->table);
-  return read_csv_table(text, file);
+  return samples_or_csv(text, file);
 }
 
 }  // namespace

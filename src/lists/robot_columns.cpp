@@ -1,12 +1,10 @@
 #include "robot_columns.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
+#include "cell_in_si.hpp"
 #include "orientation_columns.hpp"
 #include "posewright/model/placement.hpp"
-#include "posewright/problem/units.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright {
@@ -19,14 +17,8 @@ double value_of(const PoseTable& table, const PoseRow& row, const std::string& n
   const auto at = std::size_t(std::find(table.names.begin(), table.names.end(), name) - table.names.begin());
   const auto* text = std::get_if<std::string>(&row.cells[at]);
   if (text == nullptr) return std::get<double>(row.cells[at]);
-  const Quantity quantity = unit == "m" ? Quantity::length : unit == "rad" ? Quantity::angle : Quantity::number;
-  const std::string written = table.units.empty() ? "" : table.units[at];
-  try {
-    return parse_value(written.empty() ? *text : *text + " " + written, quantity);
-  } catch (const InputError&) {
-    throw InputError(place, fmt::format("'{}' of '{}' is not a value", text->substr(0, 40), name),
-                     "a number; in the header, a unit: " + allowed_units({quantity}));
-  }
+  return cell_in_si(*text, table.units.empty() ? "" : table.units[at], name,
+                    unit == "rad" ? Quantity::angle : Quantity::number, place);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "orientation_columns.hpp"
 #include "posewright/controller/yaml_document.hpp"
 #include "posewright/support/text.hpp"
 
@@ -36,9 +37,10 @@ std::optional<Eigen::Isometry3d> transform_of(const Document& document, const YA
     if (is_unmeasured(place)) return std::nullopt;
     p[k] = document.number(place, name);
   }
-  if (std::abs(q.norm() - 1) > 1e-3)
-    document.fail(rotation, fmt::format("the quaternion has length {:.6g}", q.norm()), "1 is expected");
-  return Eigen::Translation3d(p) * Eigen::Quaterniond(Eigen::Vector4d(q.normalized()));
+  Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
+  X.linear() = rotation_of_quaternion(q, document.place(rotation));
+  X.translation() = p;
+  return X;
 }
 
 std::optional<Eigen::Isometry3d> matrix_of(const Document& document, const YAML::Node& node) {
@@ -127,6 +129,11 @@ std::optional<Samples> read_samples(const std::string& text, const std::string& 
   } catch (const YAML::Exception& error) {
     throw InputError({file, std::max(error.mark.line + 1, 0)}, "is not valid YAML: " + in_quotes(error.msg), "");
   }
+}
+
+PoseTable samples_or_csv(const std::string& text, const std::string& file) {
+  if (std::optional<Samples> samples = read_samples(text, file)) return std::move(samples->table);
+  return read_csv_table(text, file);
 }
 
 }  // namespace posewright

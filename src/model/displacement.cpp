@@ -27,6 +27,17 @@ void change_frame(const Eigen::Isometry3d& X_AB, Eigen::Ref<Twists> twists) {
   }
 }
 
+Coordinate pose_coordinate(const std::string& name, std::size_t k, double reach,
+                           const std::vector<CoordinateLimits>& limits) {
+  Coordinate coordinate{name, k < 3 ? "m" : "rad", -reach, reach};
+  for (const CoordinateLimits& own : limits)
+    if (own.name.value == name) {
+      coordinate.lower = own.lower;
+      coordinate.upper = own.upper;
+    }
+  return coordinate;
+}
+
 void append_displacement(std::vector<Parameter>& parameters, const std::string& name, const Eigen::Isometry3d& X,
                          double length_tolerance, double angle_tolerance) {
   Eigen::Vector3d nominal = X.linear().transpose() * X.translation();

@@ -5,6 +5,7 @@
 
 #include "posewright/model/serial_chain_kinematics.hpp"
 #include "posewright/model/tip_model.hpp"
+#include "posewright/problem/problem.hpp"
 
 /// Six small displacements of a frame, D = Trans(x, y, z) Rz(rz) Ry(ry) Rx(rx), and the twists along them.
 namespace posewright {
@@ -73,6 +74,10 @@ Eigen::Isometry3d isometry_of(const Frame<double>& frame);
 
 /// Spatial twists expressed in A, given in B: adjoint of X_AB.
 void change_frame(const Eigen::Isometry3d& X_AB, Eigen::Ref<Twists> twists);
+
+/// The k-th of a pose's coordinates x, y, z (m), then three angles (rad): within ±reach, or the problem's limits.
+Coordinate pose_coordinate(const std::string& name, std::size_t k, double reach,
+                           const std::vector<CoordinateLimits>& limits);
 
 /// Parameters NAME.{x,y,z,rx,ry,rz} of a frame at X.
 void append_displacement(std::vector<Parameter>& parameters, const std::string& name, const Eigen::Isometry3d& X,

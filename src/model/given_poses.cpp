@@ -21,12 +21,7 @@ GivenPoses::GivenPoses(const GivenPosesSpec& spec, const std::vector<CoordinateL
   for (int i = 0; i < 12; ++i) geometric_.push_back({i, i < 6 ? 0 : 1});
   for (std::size_t k = 0; k < 6; ++k) {
     const double reach = k < 3 ? far : k == 4 ? std::numbers::pi : 2 * std::numbers::pi;
-    coordinates_.push_back({coordinate_names[k], k < 3 ? "m" : "rad", -reach, reach});
-    for (const CoordinateLimits& limits : pose_limits)
-      if (limits.name.value == coordinate_names[k]) {
-        coordinates_.back().lower = limits.lower;
-        coordinates_.back().upper = limits.upper;
-      }
+    coordinates_.push_back(pose_coordinate(coordinate_names[k], k, reach, pose_limits));
   }
 }
 

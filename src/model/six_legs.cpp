@@ -168,12 +168,7 @@ SixLegs::SixLegs(const SixLegsSpec& spec, const std::vector<CoordinateLimits>& p
   for (std::size_t k = 0; k < 6; ++k) {
     // Without limits from the problem file, a platform moves as far as its actuators let it: anything larger serves.
     const double reach = k < 3 ? spec.legs.front().l + spec.travel_upper : std::numbers::pi / 2;
-    coordinates_.push_back({displacement_names[k], k < 3 ? "m" : "rad", -reach, reach});
-    for (const CoordinateLimits& limits : pose_limits)
-      if (limits.name.value == displacement_names[k]) {
-        coordinates_.back().lower = limits.lower;
-        coordinates_.back().upper = limits.upper;
-      }
+    coordinates_.push_back(pose_coordinate(displacement_names[k], k, reach, pose_limits));
   }
   finish(catalogue(spec), spec.actuator_noise);
   // A deforming platform is a model of its own, not a part of the geometry that `auto` chooses from.

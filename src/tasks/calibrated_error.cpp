@@ -26,7 +26,7 @@ Configurations within_measured_ranges(const Workspace& workspace, const std::vec
     }
   Random random(0, places_stream);
   for (int k = 0; k < most_drawn && int(places.count()) < places_drawn; ++k) {
-    const MeasuredPose& one = poses[std::size_t(random.uniform() * double(poses.size()))];
+    const MeasuredPose& one = poses[std::size_t(random.index(int(poses.size())))];
     for (std::size_t i = 0; i < q.size(); ++i)
       q[i] = workspace.coordinates()[i].discrete() ? one.q[i] : random.uniform(low[i], high[i]);
     if (workspace.violation(q) < 0) append(places, q);

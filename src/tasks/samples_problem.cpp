@@ -191,7 +191,6 @@ SamplesProblem samples_problem(const std::filesystem::path& file, std::optional<
   }
   const std::vector<Sample> kept = trusted(samples, frames, result.wrong);
   result.on_hand = frames.on_hand;
-  result.left = frames.left;
   const auto [position, rotation] = noise_of(kept, frames);
   for (const Sample& sample : samples)
     if (std::ranges::find(result.wrong, sample.id) != result.wrong.end()) {

@@ -15,6 +15,7 @@ class Document {
  public:
   explicit Document(std::string file) : file_(std::move(file)) {}
   int line(const YAML::Node& node) const;
+  SourcePlace place(const YAML::Node& node) const { return {file_, line(node)}; }
   [[noreturn]] void fail(const YAML::Node& node, const std::string& what, const std::string& allowed) const;
   /// The value of a key; fails at the mapping if it has none.
   YAML::Node at(const YAML::Node& mapping, const std::string& key) const;

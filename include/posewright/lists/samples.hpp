@@ -17,5 +17,7 @@ struct Samples {
 /// Reads what easy_handeye2 and MoveIt Calibration save (YAML). None if the text is of neither. Throws InputError with
 /// file and line.
 std::optional<Samples> read_samples(const std::string& text, const std::string& file);
+/// The table of these samples, else of CSV.
+PoseTable samples_or_csv(const std::string& text, const std::string& file);
 
 }  // namespace posewright

@@ -11,7 +11,6 @@ namespace posewright {
 struct SamplesProblem {
   std::string text;  ///< of the problem file; its robot is known by its poses
   bool on_hand = true;
-  double left = 0.0;               ///< rms distance that the frames leave, m, at points 0.1 m about the target's origin
   std::vector<int> wrong;          ///< ids of samples that do not fit the others; the frames are without them
   std::vector<std::string> notes;  ///< default choices, wrong samples
 };

@@ -53,9 +53,9 @@ class Part {
   Monitor monitor_;
 };
 
-class Run {
+class AutomaticSearch {
  public:
-  Run(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor)
+  AutomaticSearch(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor)
       : task_(task), options_(options), whole_(monitor, 1.0), monitor_(whole_.monitor()), begin_(Clock::now()) {
     best_.value = -std::numeric_limits<double>::infinity();
   }
@@ -290,7 +290,7 @@ class Run {
 }  // namespace
 
 Design AutomaticPlanner::do_plan(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor) const {
-  return Run(task, options, monitor).carry_out();
+  return AutomaticSearch(task, options, monitor).carry_out();
 }
 
 }  // namespace posewright

@@ -1,8 +1,8 @@
 // Plans a problem file: 1_plan PROBLEM PLAN.json. Prints the table that the command line prints.
 #include <iostream>
-#include <posewright/outputs/write_plan.hpp>
 #include <posewright/problem/design_keys.hpp>
 #include <posewright/problem/read_problem.hpp>
+#include <posewright/results/plan.hpp>
 #include <posewright/support/error.hpp>
 #include <posewright/support/file.hpp>
 #include <posewright/tasks/plan_problem.hpp>

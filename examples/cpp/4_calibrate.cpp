@@ -10,6 +10,7 @@
 #include <posewright/support/error.hpp>
 #include <posewright/support/file.hpp>
 #include <posewright/support/json.hpp>
+#include <posewright/tasks/calibrate_problem.hpp>
 #include <posewright/tasks/simulate_problem.hpp>
 
 int main(int count, char** words) {

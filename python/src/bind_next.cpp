@@ -22,7 +22,7 @@ using MadeNext = Made<NextStep, NextOptions>;
 
 static std::string text_of(const MadeNext& m) { return next_text(m.value.next); }
 static auto json_of(const MadeNext& m) {
-  return next_json(m.problem->problem, m.options, m.value.next, m.value.history);
+  return next_json(m.problem->problem, m.options.seed, m.options.measured_file(), m.value.next, m.value.history);
 }
 
 namespace {

@@ -6,7 +6,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
-#include "posewright/outputs/write_plan.hpp"
+#include "posewright/results/plan.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright::python {

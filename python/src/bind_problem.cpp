@@ -7,6 +7,7 @@
 #include "posewright/model/apply_parameters.hpp"
 #include "posewright/options/tables.hpp"
 #include "posewright/problem/read_problem.hpp"
+#include "posewright/study/written_plan.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright::python {

@@ -3,9 +3,9 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
-#include "posewright/outputs/route.hpp"
 #include "posewright/results/evaluation.hpp"
 #include "posewright/results/observation.hpp"
+#include "posewright/results/route.hpp"
 #include "posewright/support/json.hpp"
 
 namespace posewright::python {

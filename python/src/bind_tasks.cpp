@@ -9,7 +9,9 @@
 #include "posewright/lists/read_poses.hpp"
 #include "posewright/model/variant_columns.hpp"
 #include "posewright/options/tables.hpp"
-#include "posewright/outputs/report.hpp"
+#include "posewright/report/report.hpp"
+#include "posewright/report/report_problem.hpp"
+#include "posewright/report/report_result.hpp"
 #include "posewright/results/calibrated_dh_table.hpp"
 #include "posewright/results/calibration.hpp"
 #include "posewright/results/comparison.hpp"
@@ -18,8 +20,9 @@
 #include "posewright/support/error.hpp"
 #include "posewright/support/file.hpp"
 #include "posewright/support/json.hpp"
-#include "posewright/tasks/report_problem.hpp"
-#include "posewright/tasks/report_result.hpp"
+#include "posewright/tasks/compare_problem.hpp"
+#include "posewright/tasks/place_stations.hpp"
+#include "posewright/tasks/simulate_problem.hpp"
 
 namespace posewright::python {
 
@@ -41,9 +44,13 @@ static std::string text_of(const MadeStations& m) { return stations_text(m.value
 static auto json_of(const MadeCalibration& m) {
   return calibration_json(m.problem->problem, m.options, m.value, table_of(m));
 }
-static auto json_of(const MadeComparison& m) { return comparison_json(m.problem->problem, m.options, m.value); }
+static auto json_of(const MadeComparison& m) {
+  return comparison_json(m.problem->problem, m.options.run.seed, m.value);
+}
 static auto json_of(const MadeSimulation& m) { return simulation_json(m.problem->problem, m.options, m.value); }
-static auto json_of(const MadeStations& m) { return stations_json(m.problem->problem, m.options, m.value); }
+static auto json_of(const MadeStations& m) {
+  return stations_json(m.problem->problem, m.options.run.seed, criterion_of_places(m.problem->problem), m.value);
+}
 
 namespace {
 

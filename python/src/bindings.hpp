@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "posewright/lists/pose_list.hpp"
-#include "posewright/outputs/plan.hpp"
 #include "posewright/problem/problem.hpp"
+#include "posewright/results/plan.hpp"
 #include "posewright/study/variant.hpp"
 #include "posewright/support/monitor.hpp"
 #include "watch.hpp"

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "bindings.hpp"
-#include "posewright/outputs/report.hpp"
+#include "posewright/report/report.hpp"
+#include "posewright/report/report_result.hpp"
 #include "posewright/support/json.hpp"
-#include "posewright/tasks/report_result.hpp"
 
 namespace posewright::python {
 

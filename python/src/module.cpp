@@ -3,7 +3,7 @@
 #include "bindings.hpp"
 #include "planners/planner_registry.hpp"
 #include "posewright/criterion/registry.hpp"
-#include "posewright/outputs/table.hpp"
+#include "posewright/support/table.hpp"
 #include "posewright/version.hpp"
 
 namespace posewright::python {

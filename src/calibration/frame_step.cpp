@@ -82,7 +82,7 @@ std::optional<FrameStep> frame_step(const IdentificationModel& model, const Vari
     selected.insert(selected.end(), frame.parameters.begin(), frame.parameters.end());
   FittedRows rows = fitted_rows(model, selected, poses, fit.correction, fit);
   auto next = Eigen::Index(columns.selected.size());
-  const Beside fitted(rows.J.leftCols(next));
+  const ResidualProjector fitted(rows.J.leftCols(next));
   rows.r = fitted.left(rows.r);
   FrameStep best;
   for (const EffectToTest& frame : frames) {

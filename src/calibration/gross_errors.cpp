@@ -59,7 +59,7 @@ Eigen::MatrixXd beside_placing(const IdentificationModel& model, const VariantCo
                                const Eigen::MatrixXd& rows) {
   const VariantColumns place = placing_columns(columns);
   if (place.selected.empty() || Eigen::Index(place.selected.size()) >= rows.rows()) return rows;
-  return Beside(blocks_of(model, place, poses, correction).all()).left(rows);
+  return ResidualProjector(blocks_of(model, place, poses, correction).all()).left(rows);
 }
 
 /// Root mean square of the readings of each pose, with the noise.

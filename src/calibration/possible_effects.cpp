@@ -119,7 +119,7 @@ class Residuals {
   const IdentificationModel& model_;
   const std::vector<MeasuredPose>& poses_;
   double freedom_ = 0.0;
-  std::optional<Beside> fitted_;
+  std::optional<ResidualProjector> fitted_;
   Eigen::VectorXd r_;
 };
 

@@ -66,7 +66,7 @@ void add_place(const IdentificationModel& model, const std::vector<MeasuredPose>
     drift.middleRows(v * r, r) = time * mean.middleRows(v * r, r);
     y.middleRows(v * r, r) = root.matrixL().solve(change(read));
   }
-  const Beside beside(mean);
+  const ResidualProjector beside(mean);
   y = beside.left(y);
   drift = beside.left(drift);
   sums.A(read, read) += drift.transpose() * drift;

@@ -24,7 +24,7 @@ std::vector<ScoreTest> score_tests(const IdentificationModel& model, const Varia
       if (std::find(selected.begin(), selected.end(), i) == selected.end()) selected.push_back(i);
   const auto own = Eigen::Index(columns.selected.size());
   FittedRows rows = fitted_rows(model, selected, poses, correction, fit);
-  const Beside fitted(rows.J.leftCols(own));
+  const ResidualProjector fitted(rows.J.leftCols(own));
   rows.r = fitted.left(rows.r);
   // Of the fitted columns per unit of a whitened reading.
   const Eigen::MatrixXd taken_up =

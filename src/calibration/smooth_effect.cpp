@@ -125,7 +125,7 @@ SmoothEffect smooth_effect(const IdentificationModel& model, const VariantColumn
     for (int k = 0; k < 3; ++k) selected.push_back(model.tip_column(tip, k));
   const FittedRows linear = fitted_rows(model, selected, list, fit.correction, some);
   const auto own = Eigen::Index(columns.selected.size());
-  const Beside fitted(linear.J.leftCols(own));
+  const ResidualProjector fitted(linear.J.leftCols(own));
   const Eigen::MatrixXd A = linear.J.rightCols(linear.J.cols() - own);
   const Eigen::VectorXd r = fitted.left(linear.r);
   std::vector<Tried> tried;

@@ -93,7 +93,7 @@ Eigen::MatrixXd effect_columns(const EffectFeatures& features, const Eigen::Matr
   return F;
 }
 
-Beside::Beside(const Eigen::MatrixXd& fitted) {
+ResidualProjector::ResidualProjector(const Eigen::MatrixXd& fitted) {
   const Eigen::VectorXd length = fitted.colwise().norm().cwiseMax(1e-300);
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(fitted * length.cwiseInverse().asDiagonal());
   Q_ = qr.householderQ() * Eigen::MatrixXd::Identity(fitted.rows(), fitted.cols());

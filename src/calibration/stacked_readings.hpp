@@ -53,9 +53,9 @@ Eigen::MatrixXd effect_columns(const EffectFeatures& features, const Eigen::Matr
                                const Eigen::MatrixXd& along, const std::vector<int>& first);
 
 /// Part of columns outside the fitted ones, all whitened: X − Q Qᵀ X.
-class Beside {
+class ResidualProjector {
  public:
-  explicit Beside(const Eigen::MatrixXd& fitted);
+  explicit ResidualProjector(const Eigen::MatrixXd& fitted);
   Eigen::MatrixXd left(const Eigen::MatrixXd& X) const { return X - Q_ * (Q_.transpose() * X); }
   /// Q, orthonormal columns.
   const Eigen::MatrixXd& basis() const { return Q_; }

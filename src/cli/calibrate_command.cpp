@@ -11,6 +11,8 @@
 #include "posewright/results/calibrated_dh_table.hpp"
 #include "posewright/results/calibration.hpp"
 #include "posewright/support/json.hpp"
+#include "posewright/tasks/calibrate_problem.hpp"
+#include "posewright/tasks/model_choice.hpp"
 #include "posewright/tasks/samples_problem.hpp"
 #include "problem_source.hpp"
 #include "result_files.hpp"
@@ -102,10 +104,11 @@ int run_models(const CommonOptions& common, const Problem& problem, CalibrateOpt
   }
   for (const Calibration& model : models)
     for (const std::string& note : model.notes) print_notes({model.variant + ": " + note});
+  const ModelChoice choice = choose_model(models);
   if (common.json) {
-    fmt::print("{}", json_text(models_json(problem, calibrate, models)));
+    fmt::print("{}", json_text(models_json(problem, calibrate, models, choice)));
   } else {
-    print_report(models_text(models));
+    print_report(models_text(models, choice));
   }
   const bool all = std::all_of(models.begin(), models.end(), [](const Calibration& c) { return c.fit.converged; });
   return all ? done : cannot_do;

@@ -2,12 +2,13 @@
 
 #include "command.hpp"
 #include "design_options.hpp"
+#include "posewright/formats/pose_formats.hpp"
 #include "posewright/lists/read_poses.hpp"
 #include "posewright/options/tables.hpp"
-#include "posewright/outputs/pose_formats.hpp"
 #include "posewright/results/comparison.hpp"
 #include "posewright/study/variant.hpp"
 #include "posewright/support/json.hpp"
+#include "posewright/tasks/compare_problem.hpp"
 #include "problem_source.hpp"
 #include "session.hpp"
 #include "task_options.hpp"
@@ -60,7 +61,7 @@ int run_compare(const po::variables_map& values, const Words& positional) {
     print_report(comparison_text(result, !compare.truth.empty()));
     return code;
   }
-  fmt::print("{}", json_text(comparison_json(problem, compare, result)));
+  fmt::print("{}", json_text(comparison_json(problem, compare.run.seed, result)));
   return code;
 }
 

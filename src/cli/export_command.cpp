@@ -5,10 +5,10 @@
 #include <cstdio>
 
 #include "command.hpp"
+#include "posewright/formats/pose_formats.hpp"
 #include "posewright/options/tables.hpp"
-#include "posewright/outputs/pose_formats.hpp"
-#include "posewright/outputs/table.hpp"
 #include "posewright/support/json.hpp"
+#include "posewright/support/table.hpp"
 #include "posewright/support/text_file.hpp"
 #include "posewright/tasks/export_sequence.hpp"
 #include "problem_source.hpp"

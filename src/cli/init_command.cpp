@@ -6,8 +6,8 @@
 
 #include "command.hpp"
 #include "posewright/options/tables.hpp"
-#include "posewright/outputs/table.hpp"
 #include "posewright/support/json.hpp"
+#include "posewright/support/table.hpp"
 #include "problem_source.hpp"
 #include "questions.hpp"
 #include "result_files.hpp"

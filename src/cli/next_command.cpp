@@ -66,7 +66,7 @@ class NextSession {
       result.notes.push_back(fmt::format("{}:{}: has no line end yet and is left out: it may be half a line",
                                          options_.data.string(), lines.next_line));
     NextState now = state_after(problem_, options_, result, state_);
-    const auto json = next_json(problem_, options_, result, now.history);
+    const auto json = next_json(problem_, options_.seed, options_.measured_file(), result, now.history);
     files_.write(now, next_csv(result), json_text(json));
     state_ = std::move(now);
     print_notes(result.notes);

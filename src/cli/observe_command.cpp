@@ -4,6 +4,7 @@
 #include "posewright/options/tables.hpp"
 #include "posewright/results/observation.hpp"
 #include "posewright/support/json.hpp"
+#include "posewright/tasks/observe_problem.hpp"
 #include "problem_source.hpp"
 #include "session.hpp"
 #include "terminal.hpp"
@@ -25,7 +26,7 @@ int run_observe(const po::variables_map& values, const Words& positional) {
   // A shortened pool would be shown as if it were whole.
   if (was_interrupted) return interrupted;
   if (common.json) {
-    fmt::print("{}", json_text(observations_json(problem, observe, observations)));
+    fmt::print("{}", json_text(observations_json(problem, observe.seed, observations)));
     return done;
   }
   for (std::size_t i = 0; i < observations.size(); ++i) {

@@ -6,7 +6,7 @@
 
 #include "planners/planner_registry.hpp"
 #include "posewright/criterion/registry.hpp"
-#include "posewright/outputs/pose_formats.hpp"
+#include "posewright/formats/pose_formats.hpp"
 #include "posewright/tasks/known_cameras.hpp"
 
 namespace posewright::cli {

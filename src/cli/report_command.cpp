@@ -8,8 +8,8 @@
 
 #include "command.hpp"
 #include "posewright/options/tables.hpp"
-#include "posewright/tasks/report_problem.hpp"
-#include "posewright/tasks/report_result.hpp"
+#include "posewright/report/report_problem.hpp"
+#include "posewright/report/report_result.hpp"
 #include "problem_source.hpp"
 #include "result_files.hpp"
 #include "session.hpp"

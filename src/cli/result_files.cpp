@@ -7,7 +7,7 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "posewright/outputs/pose_formats.hpp"
+#include "posewright/formats/pose_formats.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/json.hpp"
 #include "posewright/support/sha256.hpp"

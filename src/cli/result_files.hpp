@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "posewright/outputs/written_with.hpp"
+#include "posewright/results/plan.hpp"
 #include "posewright/support/file.hpp"
 
 namespace posewright::cli {

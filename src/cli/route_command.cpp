@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
 #include "command.hpp"
+#include "posewright/formats/pose_formats.hpp"
 #include "posewright/lists/read_poses.hpp"
 #include "posewright/options/tables.hpp"
-#include "posewright/outputs/pose_formats.hpp"
-#include "posewright/outputs/route.hpp"
+#include "posewright/results/route.hpp"
 #include "posewright/study/variant.hpp"
 #include "posewright/tasks/route_problem.hpp"
 #include "problem_source.hpp"

@@ -1,12 +1,13 @@
 #include <fmt/format.h>
 
 #include "command.hpp"
+#include "posewright/formats/pose_formats.hpp"
 #include "posewright/lists/read_poses.hpp"
 #include "posewright/options/tables.hpp"
-#include "posewright/outputs/pose_formats.hpp"
 #include "posewright/results/simulation.hpp"
 #include "posewright/study/variant.hpp"
 #include "posewright/support/json.hpp"
+#include "posewright/tasks/simulate_problem.hpp"
 #include "problem_source.hpp"
 #include "result_files.hpp"
 #include "session.hpp"

@@ -5,6 +5,7 @@
 #include "posewright/options/tables.hpp"
 #include "posewright/results/stations.hpp"
 #include "posewright/support/json.hpp"
+#include "posewright/tasks/place_stations.hpp"
 #include "problem_source.hpp"
 #include "session.hpp"
 #include "task_options.hpp"
@@ -33,7 +34,8 @@ int run_stations(const po::variables_map& values, const Words& positional) {
   const auto [ranks, was_interrupted] = watched(
       common, time_limit(values), [&](const Monitor& monitor) { return place_stations(problem, stations, monitor); },
       engine.get());
-  if (common.json) fmt::print("{}", json_text(stations_json(problem, stations, ranks)));
+  if (common.json)
+    fmt::print("{}", json_text(stations_json(problem, stations.run.seed, criterion_of_places(problem), ranks)));
   else print_report(stations_text(ranks));
   return was_interrupted ? interrupted : done;
 }

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "posewright/outputs/write_plan.hpp"
+#include "posewright/results/plan.hpp"
 #include "processes.hpp"
 #include "result_files.hpp"
 #include "terminal.hpp"

@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "command.hpp"
-#include "posewright/outputs/plan.hpp"
 #include "posewright/problem/problem.hpp"
+#include "posewright/results/plan.hpp"
 #include "session.hpp"
 
 namespace posewright::cli {

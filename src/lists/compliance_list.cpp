@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "posewright/outputs/pose_formats.hpp"
+#include "posewright/formats/pose_formats.hpp"
 #include "posewright/problem/units.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/file.hpp"

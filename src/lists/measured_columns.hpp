@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "orientation_columns.hpp"
+#include "posewright/formats/pose_formats.hpp"
 #include "posewright/model/identification_model.hpp"
-#include "posewright/outputs/pose_formats.hpp"
 #include "posewright/problem/problem.hpp"
 
 namespace posewright {

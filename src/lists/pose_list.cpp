@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "posewright/lists/read_poses.hpp"
-#include "posewright/outputs/write_plan.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright {
@@ -58,10 +57,6 @@ void require_at_most(const PoseList& list, std::size_t most, const std::string& 
   if (list.configurations.size() > most)
     throw InputError({list.name, 0}, "has " + std::to_string(list.configurations.size()) + " poses",
                      task + " at most " + std::to_string(most));
-}
-
-PoseList poses_of(const Plan& plan, const std::vector<Coordinate>& coordinates) {
-  return read_poses_text(plan_json(plan), "plan", coordinates);
 }
 
 PoseList poses_given(const std::vector<std::vector<double>>& configurations,

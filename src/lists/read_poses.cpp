@@ -9,8 +9,8 @@
 #include <numbers>
 
 #include "cell_in_si.hpp"
+#include "posewright/formats/pose_formats.hpp"
 #include "posewright/lists/samples.hpp"
-#include "posewright/outputs/pose_formats.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/file.hpp"
 #include "robot_columns.hpp"

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "posewright/formats/pose_formats.hpp"
 #include "posewright/model/identification_model.hpp"
-#include "posewright/outputs/pose_formats.hpp"
 
 namespace posewright {
 

@@ -2,8 +2,8 @@
 #include <numbers>
 
 #include "posewright/controller/known_controllers.hpp"
+#include "posewright/formats/pose_formats.hpp"
 #include "posewright/options/tables.hpp"
-#include "posewright/outputs/pose_formats.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/tasks/compensate_documents.hpp"
 

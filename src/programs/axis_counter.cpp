@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "posewright/outputs/format_text.hpp"
+#include "posewright/formats/format_text.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright::programs {

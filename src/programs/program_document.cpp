@@ -9,7 +9,7 @@
 
 #include "account.hpp"
 #include "axis_counter.hpp"
-#include "posewright/outputs/format_text.hpp"
+#include "posewright/formats/format_text.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/text_edit.hpp"
 

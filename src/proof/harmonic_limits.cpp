@@ -112,7 +112,7 @@ std::pair<double, double> BoxLimits::line_above(const NecessaryLimits::OfPoints&
 }
 
 /// constant + factor v + root √s with a line for the root.
-void BoxLimits::put_together(const NecessaryLimits::OfPoints& limit, const SearchBox& box, Kept& kept) {
+void BoxLimits::put_together(const NecessaryLimits::OfPoints& limit, const SearchBox& box, KeptLimit& kept) {
   const HarmonicLimits::Value& value = limits_.values_[std::size_t(limit.value)];
   const std::vector<double>& v = value.function.coefficients();
   kept.coefficients.resize(v.size());
@@ -133,7 +133,7 @@ void BoxLimits::put_together(const NecessaryLimits::OfPoints& limit, const Searc
 bool BoxLimits::leave(const SearchBox& box) {
   count_ = 0;
   for (const NecessaryLimits::OfPoints& limit : limits_.of_points_) {
-    Kept& kept = kept_[count_];
+    KeptLimit& kept = kept_[count_];
     put_together(limit, box, kept);
     kept.used = false;
     kept.on_box.coefficients() = kept.coefficients;
@@ -144,12 +144,12 @@ bool BoxLimits::leave(const SearchBox& box) {
   return true;
 }
 
-BoxLimits::Kept* BoxLimits::lowest_at_top(const BoxTensor& bound) {
+BoxLimits::KeptLimit* BoxLimits::lowest_at_top(const BoxTensor& bound) {
   const std::size_t top = bound.top();
-  Kept* lowest = nullptr;
+  KeptLimit* lowest = nullptr;
   double least = 0;
   for (std::size_t i = 0; i < count_; ++i) {
-    Kept& kept = kept_[i];
+    KeptLimit& kept = kept_[i];
     if (kept.used) continue;
     const double share = kept.on_box.near(top, bound) / (kept.on_box.largest() - kept.on_box.smallest());
     if (!(share < least)) continue;
@@ -161,7 +161,7 @@ BoxLimits::Kept* BoxLimits::lowest_at_top(const BoxTensor& bound) {
 
 bool BoxLimits::lower(const SearchBox& box, const BoxTensor& divisor, double enough, BoxTensor& bound) {
   for (int added = 0; added < most_added && bound.largest() > enough; ++added) {
-    Kept* limit = lowest_at_top(bound);
+    KeptLimit* limit = lowest_at_top(bound);
     if (limit == nullptr) break;
     limit->used = true;
     full_.coefficients() = limit->coefficients;
@@ -178,10 +178,10 @@ bool BoxLimits::lower(const SearchBox& box, const BoxTensor& divisor, double eno
 }
 
 int BoxLimits::most_varied() const {
-  const Kept* lowest = nullptr;
+  const KeptLimit* lowest = nullptr;
   double least = 0;
   for (std::size_t i = 0; i < count_; ++i) {
-    const Kept& kept = kept_[i];
+    const KeptLimit& kept = kept_[i];
     const double share = kept.on_box.smallest() / (kept.on_box.largest() - kept.on_box.smallest());
     if (lowest != nullptr && !(share < least)) continue;
     least = share;

@@ -55,7 +55,7 @@ class BoxLimits {
   bool allow(std::span<const double> values, HarmonicForm::Evaluator& evaluator);
 
  private:
-  struct Kept {
+  struct KeptLimit {
     std::vector<double> coefficients;  ///< of the limit as a harmonic function, raised by its error
     double most = 0.0;                 ///< see BoxTensor::put()
     BoxTensor on_box;
@@ -63,14 +63,14 @@ class BoxLimits {
   };
   /// A line in s that root √s does not exceed anywhere in the box: constant and slope.
   std::pair<double, double> line_above(const NecessaryLimits::OfPoints& limit, const SearchBox& box);
-  void put_together(const NecessaryLimits::OfPoints& limit, const SearchBox& box, Kept& kept);
+  void put_together(const NecessaryLimits::OfPoints& limit, const SearchBox& box, KeptLimit& kept);
   /// Axis along which the kept limit varies most that is lowest in the box, as a share of its range; −1: none is kept.
   int most_varied() const;
   /// The kept limit that is lowest where the bound is largest, null if none is below 0 there.
-  Kept* lowest_at_top(const BoxTensor& bound);
+  KeptLimit* lowest_at_top(const BoxTensor& bound);
 
   const HarmonicLimits& limits_;
-  std::vector<Kept> kept_;
+  std::vector<KeptLimit> kept_;
   std::size_t count_ = 0;  ///< of kept_ that are of this box
   BoxTensor square_, full_;
   std::vector<double> values_;

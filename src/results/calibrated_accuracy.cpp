@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "calibration_parts.hpp"
-#include "posewright/outputs/json_values.hpp"
-#include "posewright/outputs/table.hpp"
+#include "posewright/formats/json_values.hpp"
 #include "posewright/support/distributions.hpp"
+#include "posewright/support/table.hpp"
 
 namespace posewright {
 namespace {

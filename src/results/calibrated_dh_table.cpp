@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "posewright/model/variant_columns.hpp"
-#include "posewright/outputs/table.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/support/table.hpp"
 
 namespace posewright {
 namespace {

@@ -3,8 +3,7 @@
 #include <cmath>
 
 #include "calibration_parts.hpp"
-#include "posewright/outputs/table.hpp"
-#include "posewright/tasks/model_choice.hpp"
+#include "posewright/support/table.hpp"
 
 namespace posewright {
 namespace {
@@ -23,11 +22,10 @@ std::string shown_share(double value) { return std::isfinite(value) ? fmt::forma
 
 }  // namespace
 
-std::string models_text(const std::vector<Calibration>& models) {
+std::string models_text(const std::vector<Calibration>& models, const ModelChoice& choice) {
   const bool validated = models.front().held_back > 0;
   std::string text = fmt::format("{} models fitted to the same {} poses", models.size(), models.front().poses);
   if (validated) text += fmt::format(" and validated at {} others", models.front().held_back);
-  const ModelChoice choice = choose_model(models);
   Table fits(
       {"model", "parameters", "residuals / noise", "new poses / noise", "uncalibrated", "AICc", "F against", "p", ""},
       {Align::left, Align::right, Align::right, Align::right, Align::right, Align::right, Align::left, Align::right,

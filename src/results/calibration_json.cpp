@@ -2,10 +2,9 @@
 
 #include "calibration_parts.hpp"
 #include "document.hpp"
-#include "posewright/outputs/json_values.hpp"
-#include "posewright/outputs/stated_error.hpp"
+#include "posewright/formats/json_values.hpp"
 #include "posewright/results/calibrated_dh_table.hpp"
-#include "posewright/tasks/model_choice.hpp"
+#include "posewright/results/stated_error.hpp"
 
 namespace posewright {
 namespace {
@@ -160,11 +159,11 @@ Json covariance_json(const Calibration& c) {
 }
 
 /// Begin of every result of the command.
-Json begin_calibration(const char* schema, const Problem& problem, const CalibrateOptions& options) {
+Json begin_calibration(const char* schema, const Problem& problem, const MeasuredFiles& files) {
   Json json = begin_document(schema, problem);
-  json["data"] = options.data.string();
+  json["data"] = files.data.string();
   json["campaigns"] = Json::array();
-  for (const std::filesystem::path& file : options.campaigns) json["campaigns"].push_back(file.string());
+  for (const std::filesystem::path& file : files.campaigns) json["campaigns"].push_back(file.string());
   return json;
 }
 
@@ -246,17 +245,17 @@ Weighting weighting_of(std::string_view word) {
   return Weighting::weighted;
 }
 
-Json calibration_json(const Problem& problem, const CalibrateOptions& options, const Calibration& calibration,
+Json calibration_json(const Problem& problem, const MeasuredFiles& files, const Calibration& calibration,
                       const std::optional<DhTable>& table) {
-  Json json = begin_calibration("posewright/calibration/1", problem, options);
+  Json json = begin_calibration("posewright/calibration/1", problem, files);
   json.update(figures_json(calibration));
   json["denavit_hartenberg"] = table ? dh_table_json(*table) : Json(nullptr);
   return json;
 }
 
-Json models_json(const Problem& problem, const CalibrateOptions& options, const std::vector<Calibration>& models) {
-  Json json = begin_calibration("posewright/calibrations/1", problem, options);
-  const ModelChoice choice = choose_model(models);
+Json models_json(const Problem& problem, const MeasuredFiles& files, const std::vector<Calibration>& models,
+                 const ModelChoice& choice) {
+  Json json = begin_calibration("posewright/calibrations/1", problem, files);
   json["recommended"] = choice.recommended.empty() ? Json(nullptr) : Json(choice.recommended);
   json["why"] = choice.why;
   const auto value = [](const std::optional<double>& v) { return v ? finite_or_null(*v) : Json(nullptr); };
@@ -270,14 +269,28 @@ Json models_json(const Problem& problem, const CalibrateOptions& options, const 
                               {"f", value(m.f)},
                               {"probability", value(m.probability)}});
   json["models"] = Json::array();
-  for (const Calibration& model : models) json["models"].push_back(calibration_json(problem, options, model));
+  for (const Calibration& model : models) json["models"].push_back(calibration_json(problem, files, model));
   return json;
 }
 
-Json compensator_json(const Problem& problem, const CalibrateOptions& options, const CompensatorConstants& constants) {
-  Json json = begin_calibration("posewright/compensator/1", problem, options);
+Json compensator_json(const Problem& problem, const MeasuredFiles& files, const CompensatorConstants& constants) {
+  Json json = begin_calibration("posewright/compensator/1", problem, files);
   json["compensator"] = compensator_json(constants);
   return json;
+}
+
+const CalibratedOrientation* turned_frame(const Calibration& calibration, const CalibratedParameter& parameter) {
+  const std::string& name = parameter.label.name;
+  for (const CalibratedOrientation& o : calibration.orientations)
+    for (const char* angle : {".rx", ".ry", ".rz"})
+      if (name == o.frame + angle) return &o;
+  return nullptr;
+}
+
+std::optional<CalibratedEffect> shown_effect(const Calibration& calibration) {
+  constexpr double level = 0.05;
+  if (calibration.smooth.shown(level)) return CalibratedEffect{calibration.smooth.size, calibration.smooth.length};
+  return std::nullopt;
 }
 
 }  // namespace posewright

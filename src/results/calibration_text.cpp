@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "calibration_parts.hpp"
-#include "posewright/outputs/stated_error.hpp"
-#include "posewright/outputs/table.hpp"
+#include "posewright/results/stated_error.hpp"
+#include "posewright/support/table.hpp"
 
 namespace posewright {
 namespace {

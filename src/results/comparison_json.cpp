@@ -1,8 +1,8 @@
 #include "document.hpp"
-#include "posewright/outputs/discrimination.hpp"
-#include "posewright/outputs/json_values.hpp"
-#include "posewright/outputs/stated_error.hpp"
+#include "posewright/formats/json_values.hpp"
 #include "posewright/results/comparison.hpp"
+#include "posewright/results/discrimination.hpp"
+#include "posewright/results/stated_error.hpp"
 
 namespace posewright {
 namespace {
@@ -103,8 +103,8 @@ Json figures_json(const Comparison& c) {
 
 }  // namespace
 
-Json comparison_json(const Problem& problem, const CompareOptions& options, const Comparison& comparison) {
-  Json json = begin_document("posewright/comparison/1", problem, options.run.seed);
+Json comparison_json(const Problem& problem, std::uint64_t seed, const Comparison& comparison) {
+  Json json = begin_document("posewright/comparison/1", problem, seed);
   json.update(figures_json(comparison));
   return json;
 }

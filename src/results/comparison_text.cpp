@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "posewright/outputs/discrimination.hpp"
-#include "posewright/outputs/stated_error.hpp"
-#include "posewright/outputs/table.hpp"
 #include "posewright/results/comparison.hpp"
+#include "posewright/results/discrimination.hpp"
+#include "posewright/results/stated_error.hpp"
+#include "posewright/support/table.hpp"
 
 namespace posewright {
 namespace {
@@ -210,6 +210,19 @@ std::string comparison_text(const Comparison& c, bool aliases_in_full) {
   return text +
          "To first order, with tolerances and nominal values of the problem file. Only measurements can show\nwhich "
          "variant is true; effects missing in both variants are not included.\n";
+}
+
+std::optional<double> ExtraWorth::error_without() const {
+  if (!noise_without || !bias_without) return std::nullopt;
+  return std::hypot(*noise_without, *bias_without);
+}
+
+std::optional<bool> ExtraWorth::worth() const {
+  // Two names for the same effect give the same error but for rounding.
+  constexpr double same_error = 1e-6;
+  const std::optional<double> other = error_without();
+  if (!error_with || !other) return std::nullopt;
+  return *error_with < (1 - same_error) * *other;
 }
 
 }  // namespace posewright

@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "document.hpp"
-#include "posewright/outputs/json_values.hpp"
-#include "posewright/outputs/table.hpp"
+#include "posewright/formats/json_values.hpp"
+#include "posewright/support/table.hpp"
 
 namespace posewright {
 namespace {
@@ -180,6 +180,43 @@ Json compensation_json(const Problem& problem, const Compensation& c) {
     json["lines"].push_back({{"file", line.file}, {"line", line.line}, {"largest", finite_or_null(line.largest)}});
   json["notes"] = c.notes;
   return json;
+}
+
+std::string NotCompensated::text() const {
+  return fmt::format("{}{}: pose {}: {}", file, line > 0 ? fmt::format(":{}", line) : "", id, why);
+}
+
+void Compensation::add_account(ProgramAccount account, const CompensatedList& list) {
+  for (ProgramEntry& entry : account.entries) {
+    if (entry.point < 0 || list.solutions[std::size_t(entry.point)].outcome == CommandSolver::Outcome::reached)
+      continue;
+    entry.treatment = Treatment::not_compensated;
+    for (const NotCompensated& failure : failures)
+      if (failure.file == list.file && failure.id == list.ids[std::size_t(entry.point)]) entry.why = failure.why;
+  }
+  programs.push_back(std::move(account));
+}
+
+void Compensation::settle_motions() {
+  std::map<std::string, std::string> open;
+  for (const ProgramAccount& program : programs)
+    for (const ProgramEntry& entry : program.entries)
+      if (entry.treatment == Treatment::not_compensated && !entry.target.empty())
+        open.insert({entry.target, entry.why});
+  for (ProgramAccount& program : programs)
+    for (ProgramEntry& entry : program.entries) {
+      const auto at = open.find(entry.target);
+      if (entry.point >= 0 || at == open.end() || entry.treatment != Treatment::compensated) continue;
+      entry.treatment = Treatment::not_compensated;
+      entry.why = at->second;
+    }
+}
+
+std::size_t Compensation::open_lines() const {
+  std::size_t count = 0;
+  for (const ProgramAccount& program : programs)
+    count += program.count(Treatment::not_compensated) + program.count(Treatment::not_understood);
+  return count;
 }
 
 }  // namespace posewright

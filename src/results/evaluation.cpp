@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "posewright/criterion/registry.hpp"
-#include "posewright/outputs/json_values.hpp"
-#include "posewright/outputs/table.hpp"
-#include "posewright/outputs/write_plan.hpp"
+#include "posewright/formats/json_values.hpp"
+#include "posewright/results/plan.hpp"
 #include "posewright/support/json.hpp"
+#include "posewright/support/table.hpp"
 
 namespace posewright {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "calibration_parts.hpp"
 #include "posewright/model/placement.hpp"
-#include "posewright/outputs/table.hpp"
+#include "posewright/support/table.hpp"
 
 namespace posewright {
 namespace {

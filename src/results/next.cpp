@@ -6,11 +6,10 @@
 #include <numbers>
 
 #include "document.hpp"
-#include "posewright/outputs/json_values.hpp"
-#include "posewright/outputs/plan.hpp"
-#include "posewright/outputs/stated_error.hpp"
-#include "posewright/outputs/table.hpp"
-#include "posewright/outputs/write_plan.hpp"
+#include "posewright/formats/json_values.hpp"
+#include "posewright/results/plan.hpp"
+#include "posewright/results/stated_error.hpp"
+#include "posewright/support/table.hpp"
 
 namespace posewright {
 namespace {
@@ -213,11 +212,11 @@ std::string next_text(const NextPoses& r) {
   return text;
 }
 
-Json next_json(const Problem& problem, const NextOptions& options, const NextPoses& r,
+Json next_json(const Problem& problem, std::uint64_t seed, const std::string& data, const NextPoses& r,
                const std::vector<NextPoint>& history) {
   const auto optional = [](const auto& value) { return value ? Json(*value) : Json(nullptr); };
-  Json json = begin_document("posewright/next/1", problem, options.seed);
-  json["data"] = options.text ? Json(options.data.string()) : Json(nullptr);
+  Json json = begin_document("posewright/next/1", problem, seed);
+  json["data"] = text_or_null(data);
   json["variant"] = r.variant;
   json["criterion"] = r.criterion;
   json["verdict"] = verdict_name(r.verdict);

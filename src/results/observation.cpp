@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "document.hpp"
-#include "posewright/outputs/table.hpp"
+#include "posewright/support/table.hpp"
 
 namespace posewright {
 namespace {
@@ -213,9 +213,8 @@ Json observation_json(const Observation& o) {
   return json;
 }
 
-Json observations_json(const Problem& problem, const ObserveOptions& options,
-                       const std::vector<Observation>& observations) {
-  Json json = begin_document("posewright/observation/1", problem, options.seed);
+Json observations_json(const Problem& problem, std::uint64_t seed, const std::vector<Observation>& observations) {
+  Json json = begin_document("posewright/observation/1", problem, seed);
   json["variants"] = Json::array();
   for (const Observation& o : observations) json["variants"].push_back(observation_json(o));
   return json;

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "calibration_parts.hpp"
-#include "posewright/outputs/table.hpp"
 #include "posewright/support/distributions.hpp"
+#include "posewright/support/table.hpp"
 
 namespace posewright {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "calibration_parts.hpp"
-#include "posewright/outputs/table.hpp"
+#include "posewright/support/table.hpp"
 
 namespace posewright {
 namespace {

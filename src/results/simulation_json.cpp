@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "document.hpp"
-#include "posewright/outputs/json_values.hpp"
+#include "posewright/formats/json_values.hpp"
 #include "posewright/results/calibration.hpp"
 #include "posewright/results/simulation.hpp"
 

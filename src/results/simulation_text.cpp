@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "posewright/outputs/table.hpp"
 #include "posewright/results/calibration.hpp"
 #include "posewright/results/simulation.hpp"
+#include "posewright/support/table.hpp"
 
 namespace posewright {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "document.hpp"
 #include "posewright/model/variant_columns.hpp"
-#include "posewright/outputs/stated_error.hpp"
-#include "posewright/outputs/table.hpp"
+#include "posewright/results/stated_error.hpp"
+#include "posewright/support/table.hpp"
 #include "station_map.hpp"
 
 namespace posewright {
@@ -79,7 +79,8 @@ std::string stations_text(const std::vector<StationRank>& ranks) {
   return text;
 }
 
-Json stations_json(const Problem& problem, const StationOptions& options, const std::vector<StationRank>& ranks) {
+Json stations_json(const Problem& problem, std::uint64_t seed, const std::string& criterion,
+                   const std::vector<StationRank>& ranks) {
   Json list = Json::array();
   for (const StationRank& rank : ranks) {
     Json stations = Json::object();
@@ -101,9 +102,9 @@ Json stations_json(const Problem& problem, const StationOptions& options, const 
     }
     list.push_back(json);
   }
-  Json json = begin_document("posewright/stations/1", problem, options.run.seed);
+  Json json = begin_document("posewright/stations/1", problem, seed);
   json["variant"] = find_variant(problem, "").name;
-  json["criterion"] = criterion_of_places(problem);
+  json["criterion"] = criterion;
   json["base"] = base_json(problem);
   json["obstacles"] = obstacles_json(problem);
   json["interrupted"] = !ended_early(ranks).empty();

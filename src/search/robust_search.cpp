@@ -45,7 +45,7 @@ class RobustSearch {
     if (figures_.references().empty()) return result;
     result.references = figures_.raw_references();
     result.nominal = result.robust = figures_.figures(figures_.given());
-    if (result.stopped || !look_from_best_weights()) result.stopped = true;
+    if (result.stopped || !evaluate_at_best_weights()) result.stopped = true;
     result.bound = figures_.bound();
     return result;
   }
@@ -84,13 +84,13 @@ class RobustSearch {
 
  private:
   /// Looks from weights that are good over the scenarios where those of the nominal optimum are not.
-  bool look_from_best_weights() {
+  bool evaluate_at_best_weights() {
     weighted_ = figures_.optimal_weights();
     // What is worth most to other weights may have been left out of the pool.
     for (int look = 0; look < most_looks && figures_.gap() > small_gap; ++look) {
       const ScenarioPool pool(figures_, request_, figures_.given(), weighted_);
       CandidateWeights better = robust_weights(figures_, request_, pool, weighted_, monitor_);
-      if (!figures_.look_from(better)) return false;
+      if (!figures_.evaluate_at(better)) return false;
       weighted_ = std::move(better);
     }
     return true;

@@ -92,7 +92,7 @@ std::string ScenarioFigures::reference_of(int scenario) const {
   const Eigen::MatrixXd prior = prior_of(scenario);
   ApproximateDesignOptions options = options_;
   if (prior.size() > 0) options.prior = prior / double(request_.poses);
-  const Seen seen = look(blocks, prior, optimal_weights());
+  const Seen seen = evaluate(blocks, prior, optimal_weights());
   // Where the nominal weights are as good as that, what they prove is enough.
   const double ratio = (best_mean(seen.sensitivity, options_.cap) + seen.of_prior) / interest_;
   const bool enough = std::isfinite(seen.log_det) && ratio < 1 + reference_tolerance;
@@ -103,13 +103,13 @@ std::string ScenarioFigures::reference_of(int scenario) const {
   std::int64_t unreached = 0;
   for (std::size_t i = 0; i < blocks.count(); ++i) unreached += blocks.block(i).isZero(0.0) ? 1 : 0;
   out.put(unreached);
-  put(seen, out);
+  write(seen, out);
   return out.take();
 }
 
 bool ScenarioFigures::find_references(long& unreached) {
   std::vector<double> references, given;
-  Look all;
+  AtWeights all;
   const bool stopped = run_tasks(
       {"drawn robots", scenarios(), request_.planner.threads}, [&](std::size_t k, int) { return reference_of(int(k)); },
       [&](std::size_t, std::string_view bytes) {
@@ -117,7 +117,7 @@ bool ScenarioFigures::find_references(long& unreached) {
         references.push_back(in.get<double>());
         given.push_back((in.get<double>() - references.back()) / interest_);
         unreached += long(in.get<std::int64_t>());
-        take(in, all);
+        read(in, all);
       },
       monitor_);
   if (references.size() < scenarios()) return false;
@@ -140,8 +140,8 @@ CandidateWeights ScenarioFigures::optimal_weights() const {
   return weights;
 }
 
-ScenarioFigures::Seen ScenarioFigures::look(const BlockArray& blocks, const Eigen::MatrixXd& prior,
-                                            const CandidateWeights& weights) const {
+ScenarioFigures::Seen ScenarioFigures::evaluate(const BlockArray& blocks, const Eigen::MatrixXd& prior,
+                                                const CandidateWeights& weights) const {
   const Eigen::MatrixXd own = prior / double(request_.poses);
   Seen seen{-infinity, 0.0, std::vector<double>(blocks.count(), 0.0)};
   const auto expansion = function_.expand(weighted_information(blocks, own, weights));
@@ -152,39 +152,40 @@ ScenarioFigures::Seen ScenarioFigures::look(const BlockArray& blocks, const Eige
   return seen;
 }
 
-void ScenarioFigures::put(const Seen& seen, ByteWriter& out) {
+void ScenarioFigures::write(const Seen& seen, ByteWriter& out) {
   out.put(seen.log_det);
   out.put(seen.of_prior);
   out.put(seen.sensitivity);
 }
 
-void ScenarioFigures::take(ByteReader& in, Look& look) {
-  look.log_dets.push_back(in.get<double>());
-  look.of_prior.push_back(in.get<double>());
-  look.sensitivity.emplace_back();
-  in.get(look.sensitivity.back());
+void ScenarioFigures::read(ByteReader& in, AtWeights& bounds) {
+  bounds.log_dets.push_back(in.get<double>());
+  bounds.of_prior.push_back(in.get<double>());
+  bounds.sensitivity.emplace_back();
+  in.get(bounds.sensitivity.back());
 }
 
-void ScenarioFigures::accept(Look look) {
-  look_ = std::move(look);
-  for (std::size_t k = 0; k < look_.log_dets.size(); ++k) look_.values.push_back(efficiency(look_.log_dets[k], k));
+void ScenarioFigures::accept(AtWeights bounds) {
+  at_weights_ = std::move(bounds);
+  for (std::size_t k = 0; k < at_weights_.log_dets.size(); ++k)
+    at_weights_.values.push_back(efficiency(at_weights_.log_dets[k], k));
   bound_ = std::min(bound_, bound_here());
 }
 
-bool ScenarioFigures::look_from(const CandidateWeights& weights) {
-  Look all;
+bool ScenarioFigures::evaluate_at(const CandidateWeights& weights) {
+  AtWeights all;
   run_tasks(
       {"bound over drawn robots", scenarios(), request_.planner.threads},
       [&](std::size_t k, int) {
         BlockArray blocks = request_.blocks(int(k), {});
         whiten(blocks);
         ByteWriter out;
-        put(look(blocks, prior_of(int(k)), weights), out);
+        write(evaluate(blocks, prior_of(int(k)), weights), out);
         return out.take();
       },
       [&](std::size_t, std::string_view bytes) {
         ByteReader in(bytes);
-        take(in, all);
+        read(in, all);
       },
       monitor_);
   if (all.log_dets.size() < scenarios()) return false;
@@ -194,9 +195,9 @@ bool ScenarioFigures::look_from(const CandidateWeights& weights) {
 
 std::vector<double> ScenarioFigures::mean_sensitivity(const std::vector<double>& lambda) const {
   std::vector<double> mean(nominal_.count(), 0.0);
-  for (std::size_t k = 0; k < look_.sensitivity.size(); ++k)
+  for (std::size_t k = 0; k < at_weights_.sensitivity.size(); ++k)
     if (lambda[k] > 0)
-      for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += lambda[k] * look_.sensitivity[k][i];
+      for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += lambda[k] * at_weights_.sensitivity[k][i];
   return mean;
 }
 
@@ -204,21 +205,22 @@ double ScenarioFigures::bound_by(const std::vector<double>& lambda) const {
   double value = 0.0, of_prior = 0.0;
   for (std::size_t k = 0; k < lambda.size(); ++k) {
     if (!(lambda[k] > 0)) continue;
-    value += lambda[k] * look_.values[k];
-    of_prior += lambda[k] * look_.of_prior[k];
+    value += lambda[k] * at_weights_.values[k];
+    of_prior += lambda[k] * at_weights_.of_prior[k];
   }
   if (!std::isfinite(value)) return 0.0;
   return value + std::log((best_mean(mean_sensitivity(lambda), options_.cap) + of_prior) / interest_);
 }
 
 double ScenarioFigures::bound_here() const {
-  double least = std::min(0.0, bound_by(combination(scenarios()).supporting(look_.values)));
+  double least = std::min(0.0, bound_by(combination(scenarios()).supporting(at_weights_.values)));
   if (request_.aim.measure != RobustAim::Measure::worst) return std::exp(least);
-  if (!std::all_of(look_.values.begin(), look_.values.end(), [](double value) { return std::isfinite(value); }))
+  if (!std::all_of(at_weights_.values.begin(), at_weights_.values.end(),
+                   [](double value) { return std::isfinite(value); }))
     return std::exp(least);
   // Any weights are valid; those of a soft minimum spread over all scenarios that are nearly worst.
   for (const double sharpness : {10.0, 30.0, 100.0, 300.0, 1000.0})
-    least = std::min(least, bound_by(soft_minimum_weights(look_.values, sharpness)));
+    least = std::min(least, bound_by(soft_minimum_weights(at_weights_.values, sharpness)));
   return std::exp(least);
 }
 

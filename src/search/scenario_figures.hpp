@@ -44,15 +44,15 @@ class ScenarioFigures {
 
   /// Looks at all scenarios once more: ln e of the weights, and d of every candidate there, become those that bound()
   /// and mean_sensitivity() rest on. Returns false if it was stopped; what was known before stays.
-  bool look_from(const CandidateWeights& weights);
+  bool evaluate_at(const CandidateWeights& weights);
   /// Σ_k λ_k d_ik of every candidate.
   std::vector<double> mean_sensitivity(const std::vector<double>& lambda) const;
   /// d of the candidate in scenario k.
-  double sensitivity(std::size_t k, int candidate) const { return look_.sensitivity[k][std::size_t(candidate)]; }
+  double sensitivity(std::size_t k, int candidate) const { return at_weights_.sensitivity[k][std::size_t(candidate)]; }
   /// Bound of the combined efficiency of any plan: the smallest so far.
   double bound() const { return bound_; }
   /// Possible gain of any weights over the last ones: ln of the ratio.
-  double gap() const { return std::log(bound_) - combine(look_.values); }
+  double gap() const { return std::log(bound_) - combine(at_weights_.values); }
 
   /// The aim over so many of the scenarios, none more likely than another: those that stand for all where the mean
   /// counts, else the worst.
@@ -71,7 +71,7 @@ class ScenarioFigures {
   };
   /// @param blocks  whitened
   /// @param prior   for all poses, whitened; empty: none
-  Seen look(const BlockArray& blocks, const Eigen::MatrixXd& prior, const CandidateWeights& weights) const;
+  Seen evaluate(const BlockArray& blocks, const Eigen::MatrixXd& prior, const CandidateWeights& weights) const;
   /// log det of a plan; −∞ if parameters are not determined.
   double log_det_of(const BlockArray& blocks, const Eigen::MatrixXd& prior, const std::vector<int>& members) const;
   /// ln e of what has this log det (whitened) in scenario k.
@@ -79,14 +79,14 @@ class ScenarioFigures {
 
  private:
   std::string reference_of(int scenario) const;
-  struct Look {
+  struct AtWeights {
     std::vector<double> log_dets, of_prior;
     std::vector<std::vector<double>> sensitivity;
     std::vector<double> values{};  // ln e
   };
-  static void put(const Seen& seen, ByteWriter& out);
-  static void take(ByteReader& in, Look& look);
-  void accept(Look look);
+  static void write(const Seen& seen, ByteWriter& out);
+  static void read(ByteReader& in, AtWeights& bounds);
+  void accept(AtWeights bounds);
   double bound_by(const std::vector<double>& lambda) const;
   double bound_here() const;
 
@@ -102,7 +102,7 @@ class ScenarioFigures {
   ApproximateDesignOptions options_;
   std::vector<double> references_, given_;
   // At the weights that were looked from last.
-  Look look_;
+  AtWeights at_weights_;
   double bound_ = 1.0;
 };
 

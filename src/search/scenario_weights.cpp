@@ -58,7 +58,7 @@ std::vector<double> derivative(const ScenarioFigures& figures, const RobustReque
   std::vector<double> values(scenarios.size());
   parallel_for(scenarios.size(), thread_count(request.planner.threads), [&](std::size_t s, int) {
     const auto k = std::size_t(scenarios[s]);
-    seen[s] = figures.look(pool.blocks(k), pool.prior(k), weights);
+    seen[s] = figures.evaluate(pool.blocks(k), pool.prior(k), weights);
     values[s] = std::max(undetermined, figures.efficiency(seen[s].log_det, k));
   });
   const std::vector<double> lambda = request.aim.measure == RobustAim::Measure::worst

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "posewright/formats/pose_formats.hpp"
 #include "posewright/lists/read_poses.hpp"
-#include "posewright/outputs/pose_formats.hpp"
 #include "posewright/study/accuracy_points.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"

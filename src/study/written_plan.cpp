@@ -74,4 +74,8 @@ Problem as_written(Problem problem, const WrittenPlan& plan) {
   return problem;
 }
 
+PoseList poses_of(const Plan& plan, const std::vector<Coordinate>& coordinates) {
+  return read_poses_text(plan_json(plan), "plan", coordinates);
+}
+
 }  // namespace posewright

@@ -13,9 +13,9 @@
 #include "posewright/model/model_factory.hpp"
 #include "posewright/model/serial_chain.hpp"
 #include "posewright/model/variant_columns.hpp"
-#include "posewright/outputs/table.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/parallel.hpp"
+#include "posewright/support/table.hpp"
 #include "posewright/workspace/workspace.hpp"
 
 namespace posewright {
@@ -250,36 +250,6 @@ class Compensator {
 
 }  // namespace
 
-std::string NotCompensated::text() const {
-  return fmt::format("{}{}: pose {}: {}", file, line > 0 ? fmt::format(":{}", line) : "", id, why);
-}
-
-void Compensation::add_account(ProgramAccount account, const CompensatedList& list) {
-  for (ProgramEntry& entry : account.entries) {
-    if (entry.point < 0 || list.solutions[std::size_t(entry.point)].outcome == CommandSolver::Outcome::reached)
-      continue;
-    entry.treatment = Treatment::not_compensated;
-    for (const NotCompensated& failure : failures)
-      if (failure.file == list.file && failure.id == list.ids[std::size_t(entry.point)]) entry.why = failure.why;
-  }
-  programs.push_back(std::move(account));
-}
-
-void Compensation::settle_motions() {
-  std::map<std::string, std::string> open;
-  for (const ProgramAccount& program : programs)
-    for (const ProgramEntry& entry : program.entries)
-      if (entry.treatment == Treatment::not_compensated && !entry.target.empty())
-        open.insert({entry.target, entry.why});
-  for (ProgramAccount& program : programs)
-    for (ProgramEntry& entry : program.entries) {
-      const auto at = open.find(entry.target);
-      if (entry.point >= 0 || at == open.end() || entry.treatment != Treatment::compensated) continue;
-      entry.treatment = Treatment::not_compensated;
-      entry.why = at->second;
-    }
-}
-
 ArmInverse nominal_inverse(const Problem& problem) {
   const auto tip = nominal_tip(calibrated_variant(problem), false);
   const auto* chain = dynamic_cast<const SerialChain*>(tip.get());
@@ -399,13 +369,6 @@ void check_lines(const Problem& problem, const CompensateOptions& options, Compe
     const LineMotion& motion = *motions[i];
     result.lines[i].largest = check.deviation(ends.at(motion.from), ends.at(motion.to), motion.X_TipTool);
   });
-}
-
-std::size_t Compensation::open_lines() const {
-  std::size_t count = 0;
-  for (const ProgramAccount& program : programs)
-    count += program.count(Treatment::not_compensated) + program.count(Treatment::not_understood);
-  return count;
 }
 
 std::vector<Coordinate> compensation_coordinates(const Problem& problem) {

@@ -8,9 +8,6 @@
 namespace posewright {
 namespace {
 
-// Two names for the same effect give the same error but for rounding.
-constexpr double same_error = 1e-6;
-
 /// Root mean square over the parameters of interest that both estimate, in units of the tolerances of `with`.
 void compare_shared(ExtraWorth& worth, const JudgedVariant& with, const JudgedVariant& without,
                     const VariantAlias& alias) {
@@ -61,17 +58,6 @@ ExtraWorth extra_worth(const JudgedVariant& with, const JudgedVariant& without, 
     compare_shared(worth, with, without, alias);
   }
   return worth;
-}
-
-std::optional<double> ExtraWorth::error_without() const {
-  if (!noise_without || !bias_without) return std::nullopt;
-  return std::hypot(*noise_without, *bias_without);
-}
-
-std::optional<bool> ExtraWorth::worth() const {
-  const std::optional<double> other = error_without();
-  if (!error_with || !other) return std::nullopt;
-  return *error_with < (1 - same_error) * *other;
 }
 
 }  // namespace posewright

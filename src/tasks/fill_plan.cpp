@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "posewright/criterion/registry.hpp"
-#include "posewright/outputs/table.hpp"
 #include "posewright/problem/design_words.hpp"
+#include "posewright/support/table.hpp"
 
 namespace posewright {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "posewright/outputs/plan.hpp"
+#include "posewright/results/plan.hpp"
 #include "posewright/study/judgement.hpp"
 #include "posewright/study/study.hpp"
 

@@ -10,8 +10,8 @@
 #include "posewright/cell/cell.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/model/placement.hpp"
-#include "posewright/outputs/stated_error.hpp"
 #include "posewright/problem/design_keys.hpp"
+#include "posewright/results/stated_error.hpp"
 #include "posewright/study/study.hpp"
 #include "posewright/support/bytes.hpp"
 #include "posewright/support/dense.hpp"
@@ -136,9 +136,9 @@ Problem without_sight(Problem problem) {
   return problem;
 }
 
-class Ranking {
+class StationRanking {
  public:
-  Ranking(const Problem& problem, const StationOptions& options, const Monitor& monitor)
+  StationRanking(const Problem& problem, const StationOptions& options, const Monitor& monitor)
       : problem_(problem),
         full_(planned_in_full(problem)),
         quick_(planned_quickly(full_)),
@@ -324,7 +324,7 @@ std::vector<StationRank> place_stations(const Problem& problem, const StationOpt
   if (!problem.workspace.stations)
     throw InputError(problem.at(0), "names no places for stations", "set workspace: stations: among or box");
   require_stations(problem);
-  return Ranking(problem, options, monitor).rank();
+  return StationRanking(problem, options, monitor).rank();
 }
 
 }  // namespace posewright

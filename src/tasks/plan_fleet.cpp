@@ -1,6 +1,6 @@
 #include "posewright/tasks/plan_fleet.hpp"
 
-#include "posewright/outputs/stated_error.hpp"
+#include "posewright/results/stated_error.hpp"
 #include "posewright/support/bytes.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/tasks.hpp"

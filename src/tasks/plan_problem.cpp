@@ -16,6 +16,7 @@
 #include "posewright/study/judgement.hpp"
 #include "posewright/study/pose_distance.hpp"
 #include "posewright/study/study.hpp"
+#include "posewright/study/written_plan.hpp"
 #include "posewright/support/error.hpp"
 #include "robust_plan.hpp"
 

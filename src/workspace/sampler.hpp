@@ -33,7 +33,7 @@ class Sampler {
   Configurations take();
 
  private:
-  struct Run {
+  struct DrawnBatch {
     std::vector<double> values;
     std::vector<long> rejected;
     long drawn = 0;
@@ -52,8 +52,8 @@ class Sampler {
   void pin(std::size_t i, std::span<double> q) const;
   /// Draws an infeasible boundary point back to the feasible set, towards a candidate.
   int draw_back(std::size_t index, std::span<double> q) const;
-  Run run(SamplerKind kind, std::size_t number) const;
-  void add(const Run& done, std::size_t target);
+  DrawnBatch run(SamplerKind kind, std::size_t number) const;
+  void add(const DrawnBatch& done, std::size_t target);
   /// A configuration that is there already would be a repeat under another name.
   bool is_new(std::span<const double> q);
   std::size_t drawn_before() const { return rejected_.size() - 2; }

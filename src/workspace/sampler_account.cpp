@@ -48,13 +48,12 @@ void Sampler::valid_states(SamplerKind kind, std::size_t wanted, const Monitor& 
   const std::size_t target = result_.count() + wanted;
   const long limit = result_.drawn + long(wanted * options_.draws_per_candidate);
   constexpr std::size_t runs = 32;
-  std::vector<Run> batch_of_runs(runs);
+  std::vector<DrawnBatch> batches(runs);
   for (std::size_t first = 0; result_.count() < target && result_.drawn < limit && !monitor.should_stop();
        first += runs) {
-    parallel_for(runs, thread_count(options_.threads),
-                 [&](std::size_t r, int) { batch_of_runs[r] = run(kind, first + r); });
+    parallel_for(runs, thread_count(options_.threads), [&](std::size_t r, int) { batches[r] = run(kind, first + r); });
     const std::size_t before = result_.count();
-    for (const Run& done : batch_of_runs) {
+    for (const DrawnBatch& done : batches) {
       if (result_.count() >= target) break;
       add(done, target);
     }
@@ -64,14 +63,14 @@ void Sampler::valid_states(SamplerKind kind, std::size_t wanted, const Monitor& 
   }
 }
 
-Sampler::Run Sampler::run(SamplerKind kind, std::size_t number) const {
+Sampler::DrawnBatch Sampler::run(SamplerKind kind, std::size_t number) const {
   namespace ob = ompl::base;
   Random random(options_.seed, mix_bits(mix_bits(number) + 17 * (1 + std::size_t(kind))));
   SamplingSession session(random, workspace_.reasons().size());
   const auto& space = workspace_.space_information();
   const ob::ValidStateSamplerPtr sampler = make_valid_sampler(kind, space.get());
   ob::ScopedState<ob::RealVectorStateSpace> state(space);
-  Run result;
+  DrawnBatch result;
   for (int i = 0; i < ompl_run; ++i) {
     session.fixed.clear();
     for (const Coordinate& c : workspace_.proposed())
@@ -86,7 +85,7 @@ Sampler::Run Sampler::run(SamplerKind kind, std::size_t number) const {
   return result;
 }
 
-void Sampler::add(const Run& done, std::size_t target) {
+void Sampler::add(const DrawnBatch& done, std::size_t target) {
   result_.drawn += done.drawn;
   long open = done.drawn;
   for (std::size_t r = 0; r < done.rejected.size(); ++r) {

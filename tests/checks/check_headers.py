@@ -21,7 +21,7 @@ def main(source, build, compiler, every=""):
     words = [compiler, "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-x", "c++", f'-DPOSEWRIGHT_SOURCE_DIR="{root}"', *include_flags(build)]
 
     def check(header):
-        run = subprocess.run([*words, "-I", str(header.parent), "-I", str(root / "src/outputs"), "-"], input=f'#include "{header}"\n',
+        run = subprocess.run([*words, "-I", str(header.parent), "-I", str(root / "src/results"), "-"], input=f'#include "{header}"\n',
                              capture_output=True, text=True)
         return header, run.stderr if run.returncode else ""
 

@@ -9,7 +9,7 @@ import tempfile
 def main(source, build, compiler, *folders):
     root = pathlib.Path(source)
     includes = [root, root / "include", pathlib.Path(build) / "include"]
-    includes += [root / "src" / part for part in ("cli", "workspace", "outputs", "outputs/formats")] + list(folders)
+    includes += [root / "src" / part for part in ("cli", "workspace", "formats")] + list(folders)
     blocks = re.findall(r"```cpp\n(.*?)```", (root / "docs/extending.md").read_text(), re.S)
     assert len(blocks) >= 6
     bad = 0

@@ -40,8 +40,8 @@ def files(*patterns):
 
 def lists():
     """A first byte for the format, then the list: of every format each file once would be too many."""
-    bytes_of = files("tests/outputs/golden/*.yaml", "tests/outputs/golden/*.csv", "tests/outputs/golden/*.json",
-                     "tests/outputs/golden/*.txt", "tests/outputs/golden/*.npy", "tests/outputs/golden/*.srdf")
+    bytes_of = files("tests/formats/golden/*.yaml", "tests/formats/golden/*.csv", "tests/formats/golden/*.json",
+                     "tests/formats/golden/*.txt", "tests/formats/golden/*.npy", "tests/formats/golden/*.srdf")
     return [bytes([k]) + text for k in range(14) for text in bytes_of[k::5]]
 
 
@@ -50,7 +50,7 @@ def programs():
     folders = [("krl", "kuka-krl/*.src", "kuka-krl/*.dat"), ("rapid", "*.mod"), ("tp", "*.LS"), ("urscript", "*.script"), ("inform", "*.JBI"),
                ("val3", "val3/*/*.dtx", "val3/*/*.pgx"), ("trajectory", "joint_trajectory*.yaml")]
     return [bytes([k]) + text for k, (corpus, *golden) in enumerate(folders)
-            for text in files(f"tests/programs/corpus/{corpus}/**/*.[!a]*", *(f"tests/outputs/golden/{pattern}" for pattern in golden))]
+            for text in files(f"tests/programs/corpus/{corpus}/**/*.[!a]*", *(f"tests/formats/golden/{pattern}" for pattern in golden))]
 
 
 SEEDS = {
@@ -58,15 +58,15 @@ SEEDS = {
     "urdf": lambda: files("examples/**/*.urdf"),
     "stl": lambda: [STL, BINARY],
     "obj": lambda: [OBJ],
-    "npy": lambda: [NPY, *files("tests/outputs/golden/*.npy")],
+    "npy": lambda: [NPY, *files("tests/formats/golden/*.npy")],
     "blocks": lambda: [NPY, b"a,b\n1,2\n3,4\n5,6\n", b"# c\n1,2\n3e-1,4\n5,6\n"],
     "measured": lambda: [MEASURED],
-    "sequence": lambda: files("tests/outputs/golden/*.json"),
+    "sequence": lambda: files("tests/formats/golden/*.json"),
     "parameters": lambda: [PARAMETERS],
-    "samples": lambda: [*SAMPLES, *files("tests/outputs/golden/*.samples")],
+    "samples": lambda: [*SAMPLES, *files("tests/formats/golden/*.samples")],
     "scene": lambda: [*SCENE],
-    "srdf": lambda: [SRDF, *GROUPS, *files("tests/outputs/golden/*.srdf")],
-    "settings": lambda: [SETTINGS, *files("controllers/*.yaml", "tests/outputs/golden/yaskawa.yaml")],
+    "srdf": lambda: [SRDF, *GROUPS, *files("tests/formats/golden/*.srdf")],
+    "settings": lambda: [SETTINGS, *files("controllers/*.yaml", "tests/formats/golden/yaskawa.yaml")],
     "lists": lists,
     "programs": programs,
 }

@@ -4,6 +4,7 @@
 
 #include "posewright/lists/read_poses.hpp"
 #include "posewright/study/variant.hpp"
+#include "posewright/study/written_plan.hpp"
 #include "posewright/workspace/candidates.hpp"
 
 namespace posewright {

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "posewright/outputs/write_plan.hpp"
 #include "posewright/problem/problem.hpp"
+#include "posewright/results/plan.hpp"
 
 namespace posewright {
 

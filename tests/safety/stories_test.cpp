@@ -11,18 +11,18 @@
 #include <regex>
 
 #include "posewright/controller/known_controllers.hpp"
-#include "posewright/outputs/pose_formats.hpp"
-#include "posewright/outputs/write_plan.hpp"
+#include "posewright/formats/pose_formats.hpp"
 #include "posewright/problem/read_problem.hpp"
+#include "posewright/results/plan.hpp"
 #include "posewright/support/file.hpp"
 #include "posewright/tasks/check_sequence.hpp"
 #include "posewright/tasks/plan_problem.hpp"
 #include "posewright/tasks/route_problem.hpp"
+#include "tests/formats/program_readers.hpp"
 #include "tests/kit/design_edits.hpp"
 #include "tests/kit/pose_lists.hpp"
 #include "tests/kit/temporary_folder.hpp"
 #include "tests/kit/verify_cell.hpp"
-#include "tests/outputs/program_readers.hpp"
 
 namespace posewright {
 namespace {

@@ -6,12 +6,12 @@
 #include <cmath>
 #include <sstream>
 
+#include "posewright/formats/pose_formats.hpp"
 #include "posewright/lists/measured_data.hpp"
 #include "posewright/model/model_factory.hpp"
 #include "posewright/model/variant_columns.hpp"
-#include "posewright/outputs/pose_formats.hpp"
-#include "posewright/outputs/write_plan.hpp"
 #include "posewright/problem/read_problem.hpp"
+#include "posewright/results/plan.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/json.hpp"
 #include "posewright/tasks/calibrate_problem.hpp"

@@ -9,9 +9,9 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "posewright/outputs/pose_sequence.hpp"
-#include "posewright/outputs/write_plan.hpp"
+#include "posewright/formats/pose_sequence.hpp"
 #include "posewright/problem/read_problem.hpp"
+#include "posewright/results/plan.hpp"
 #include "posewright/tasks/evaluate_problem.hpp"
 #include "posewright/tasks/place_stations.hpp"
 #include "posewright/tasks/plan_problem.hpp"

@@ -7,11 +7,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "posewright/formats/pose_formats.hpp"
 #include "posewright/model/model_factory.hpp"
 #include "posewright/model/variant_columns.hpp"
-#include "posewright/outputs/pose_formats.hpp"
-#include "posewright/outputs/write_plan.hpp"
 #include "posewright/problem/read_problem.hpp"
+#include "posewright/results/plan.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/file.hpp"
 #include "posewright/support/json.hpp"

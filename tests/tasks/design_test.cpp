@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "posewright/outputs/write_plan.hpp"
 #include "posewright/problem/read_problem.hpp"
+#include "posewright/results/plan.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/tasks/evaluate_problem.hpp"
 #include "posewright/tasks/plan_problem.hpp"

@@ -12,8 +12,8 @@
 #include <numeric>
 
 #include "posewright/model/whitening.hpp"
-#include "posewright/outputs/write_plan.hpp"
 #include "posewright/problem/read_problem.hpp"
+#include "posewright/results/plan.hpp"
 #include "posewright/search/robust_search.hpp"
 #include "posewright/study/drawn_robots.hpp"
 #include "posewright/support/error.hpp"

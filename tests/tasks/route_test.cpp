@@ -9,12 +9,13 @@
 #include <numbers>
 
 #include "posewright/lists/read_poses.hpp"
-#include "posewright/outputs/write_plan.hpp"
 #include "posewright/problem/read_problem.hpp"
+#include "posewright/report/report_problem.hpp"
+#include "posewright/results/plan.hpp"
 #include "posewright/study/variant.hpp"
+#include "posewright/study/written_plan.hpp"
 #include "posewright/tasks/evaluate_problem.hpp"
 #include "posewright/tasks/plan_problem.hpp"
-#include "posewright/tasks/report_problem.hpp"
 #include "posewright/tasks/route_problem.hpp"
 #include "tests/kit/temporary_folder.hpp"
 

@@ -17,6 +17,12 @@ struct Parameter {
   bool places = false;  ///< places things (base, tool, targets, instruments), and is no parameter of the robot
 };
 
+/// Calibrated parameters that something was computed at; empty: the nominal ones.
+struct ParametersFile {
+  std::string file, sha256;
+  std::string variant;  ///< that takes the values as its own
+};
+
 /// Tolerances used as one more measurement of their parameter (1σ): none, those of parameters that were
 /// manufactured and those that the user stated (the pose of a base is unknown by default), or all.
 enum class Prior { none, manufactured, every };

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "posewright/blocks/parameter.hpp"
 #include "posewright/model/identification_model.hpp"
-#include "posewright/outputs/plan.hpp"
 
 namespace posewright {
 
@@ -32,8 +32,6 @@ void require_fits(const PoseList& list, const std::vector<Coordinate>& coordinat
 /// Throws InputError for a list of more poses than a task takes whose time grows with their square.
 void require_at_most(const PoseList& list, std::size_t most, const std::string& task);
 
-/// The poses of a plan in memory. Throws InputError for a plan that has other coordinates.
-PoseList poses_of(const Plan& plan, const std::vector<Coordinate>& coordinates);
 /// Configurations in memory: one value for each coordinate, in their order; choices that have one label only may be
 /// left out. Throws InputError for values that do not fit.
 PoseList poses_given(const std::vector<std::vector<double>>& configurations,

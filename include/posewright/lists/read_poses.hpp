@@ -12,7 +12,7 @@ namespace posewright {
 
 /// Reads poses.csv as `plan` writes it, any CSV with one column for each coordinate (header: names, maybe with unit, as
 /// in `joint_1 [deg]`; other columns are passed over), plan.json, route.json, or a list in the named `format`
-/// (outputs/pose_formats.hpp). Load case and station go by their labels.
+/// (formats/pose_formats.hpp). Load case and station go by their labels.
 /// Throws InputError with file and line: a column that is missing, a value that is not a number, an unknown label, a
 /// value outside `coordinates`, an unknown format.
 PoseList read_poses(const std::filesystem::path& file, const std::vector<Coordinate>& coordinates,

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "posewright/outputs/pose_formats.hpp"
+#include "posewright/formats/pose_formats.hpp"
 
 namespace posewright {
 

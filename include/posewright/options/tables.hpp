@@ -8,8 +8,13 @@
 #include "posewright/options/option.hpp"
 #include "posewright/results/calibration.hpp"
 #include "posewright/study/run_options.hpp"
+#include "posewright/tasks/calibrate_problem.hpp"
+#include "posewright/tasks/compare_problem.hpp"
 #include "posewright/tasks/evaluate_problem.hpp"
 #include "posewright/tasks/init_problem.hpp"
+#include "posewright/tasks/next_poses.hpp"
+#include "posewright/tasks/observe_problem.hpp"
+#include "posewright/tasks/place_stations.hpp"
 
 namespace posewright {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "posewright/model/dh_table.hpp"
-#include "posewright/tasks/calibrate_problem.hpp"
+#include "posewright/results/calibration.hpp"
 
 namespace posewright {
 

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "posewright/criterion/criterion_data.hpp"
-#include "posewright/outputs/plan.hpp"
 #include "posewright/planning/approximate_design.hpp"
 #include "posewright/planning/design_task.hpp"
 #include "posewright/planning/workspace_bound.hpp"
+#include "posewright/results/plan.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/monitor.hpp"
 #include "posewright/support/repeats.hpp"

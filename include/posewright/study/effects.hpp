@@ -1,18 +1,11 @@
 #pragma once
 
 #include "posewright/blocks/parameter.hpp"
-#include "posewright/outputs/plan.hpp"
 #include "posewright/planning/alias.hpp"
+#include "posewright/results/comparison.hpp"
 #include "posewright/study/study.hpp"
 
 namespace posewright {
-
-/// An effect that the truth has and the fitted variant does not.
-struct AliasSource {
-  Parameter label;
-  double shift = 0.0;   ///< nominal of the truth − nominal of the fitted
-  double spread = 0.0;  ///< its tolerance where the truth estimates it, the fitted does not, and the nominals are equal
-};
 
 /// Effects of a truth on the readings that a fitted variant does not estimate (docs/compare.md): the only definition of
 /// effects by nominal and by tolerance.

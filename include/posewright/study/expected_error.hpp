@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "posewright/calibration/fit.hpp"
-#include "posewright/outputs/plan.hpp"
+#include "posewright/results/plan.hpp"
 #include "posewright/study/study.hpp"
 
 namespace posewright {

@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
-#include "posewright/outputs/plan.hpp"
 #include "posewright/planning/evaluate.hpp"
+#include "posewright/results/plan.hpp"
 #include "posewright/study/study.hpp"
 
 namespace posewright {

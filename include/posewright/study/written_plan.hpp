@@ -6,8 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "posewright/outputs/plan.hpp"
+#include "posewright/lists/pose_list.hpp"
 #include "posewright/problem/problem.hpp"
+#include "posewright/results/plan.hpp"
 
 namespace posewright {
 
@@ -27,6 +28,8 @@ struct WrittenPlan {
 /// The problem with the design that the plan was made with.
 Problem as_written(Problem problem, const WrittenPlan& plan);
 
+/// The poses of a plan in memory. Throws InputError for a plan that has other coordinates.
+PoseList poses_of(const Plan& plan, const std::vector<Coordinate>& coordinates);
 /// Throws InputError if the file is not a plan of a robot.
 WrittenPlan read_written_plan(const std::filesystem::path& file);
 

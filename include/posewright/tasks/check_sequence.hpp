@@ -1,6 +1,6 @@
 #pragma once
 
-#include "posewright/outputs/pose_sequence.hpp"
+#include "posewright/formats/pose_sequence.hpp"
 #include "posewright/problem/problem.hpp"
 
 namespace posewright {

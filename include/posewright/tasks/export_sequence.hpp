@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "posewright/outputs/pose_formats.hpp"
+#include "posewright/formats/pose_formats.hpp"
 #include "posewright/problem/problem.hpp"
 
 namespace posewright {

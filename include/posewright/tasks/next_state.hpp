@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "posewright/outputs/written_with.hpp"
+#include "posewright/results/plan.hpp"
 #include "posewright/tasks/next_poses.hpp"
 
 namespace posewright {

@@ -4,26 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "posewright/results/stations.hpp"
 #include "posewright/tasks/plan_problem.hpp"
 
 namespace posewright {
-
-/// Score of a plan from one choice of stations.
-struct StationRank {
-  std::vector<StationSpec> stations;
-  std::string why_not;           ///< why there is no plan from there; empty: there is one
-  bool in_full = false;          ///< planned as `plan` does it; else with few candidates and one start
-  bool stopped = false;          ///< not looked at, or only quickly, because the search was ended
-  int parameters = 0;            ///< of interest that it identifies
-  double phi = 0.0;              ///< criterion as it is maximised, larger is better
-  double criterion_value = 0.0;  ///< in its own terms
-  /// Ratio of σ to the best choice with as many parameters, if the criterion is a determinant, on the
-  /// geometric mean.
-  std::optional<double> sigma_ratio;
-  double feasible_share = 0.0;  ///< of the configurations drawn
-  std::string main_rejection;   ///< why most of the others are not feasible
-  std::optional<ExpectedError> expected{};
-};
 
 struct StationOptions {
   RunOptions run;

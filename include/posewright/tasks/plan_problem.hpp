@@ -1,7 +1,7 @@
 #pragma once
 
-#include "posewright/outputs/plan.hpp"
 #include "posewright/problem/problem.hpp"
+#include "posewright/results/plan.hpp"
 #include "posewright/study/run_options.hpp"
 #include "posewright/support/monitor.hpp"
 

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "posewright/lists/pose_list.hpp"
-#include "posewright/outputs/route.hpp"
 #include "posewright/problem/problem.hpp"
+#include "posewright/results/route.hpp"
 #include "posewright/support/monitor.hpp"
 
 namespace posewright {

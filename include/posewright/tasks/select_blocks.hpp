@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "posewright/blocks/read_blocks.hpp"
-#include "posewright/outputs/plan.hpp"
 #include "posewright/planning/evaluate.hpp"
 #include "posewright/problem/problem.hpp"
+#include "posewright/results/plan.hpp"
 #include "posewright/search/spread_search.hpp"
 #include "posewright/support/monitor.hpp"
 #include "posewright/support/workers.hpp"

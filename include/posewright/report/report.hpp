@@ -1,0 +1,165 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "posewright/results/plan.hpp"
+
+namespace posewright {
+
+/// A body as the report's 3-D view draws it, m.
+struct ReportBody {
+  std::string name, kind;                         ///< kind: robot, tool, obstacle
+  std::optional<std::array<double, 3>> colour{};  ///< of the URDF: red, green, blue, 0 to 1
+  int frame = 0;                                  ///< index into Report::frames
+  Eigen::Isometry3d X_FrameBody = Eigen::Isometry3d::Identity();
+  enum class Shape { box, cylinder, sphere, plane, mesh } shape = Shape::box;
+  Eigen::Vector3d size = Eigen::Vector3d::Zero();  ///< edges of a box; normal of a plane (solid behind it)
+  double radius = 0.0, length = 0.0;
+  std::vector<Eigen::Vector3d> vertices{};
+  std::vector<std::array<int, 3>> triangles{};
+};
+
+/// The robot at one moment, measurement frame.
+struct ReportKeyframe {
+  std::optional<int> pose;  ///< where it stands still: pose id, 0 for home; none on the way
+  double seconds = 0.0;     ///< since the start of the route
+  std::vector<Eigen::Isometry3d> frames{};
+  std::vector<std::vector<Eigen::Vector3d>> lines{};
+  Eigen::Isometry3d tip = Eigen::Isometry3d::Identity();
+  std::vector<std::optional<Eigen::Vector3d>> targets{};
+};
+
+/// Data for figures of any subset of the poses: information matrices m × m in units of tolerance, nuisance columns
+/// first.
+struct ReportInformation {
+  std::vector<PlannedParameter> columns;                 ///< of the first variant
+  std::vector<std::pair<int, Eigen::MatrixXd>> poses;    ///< pose id, JᵀJ
+  std::optional<Eigen::MatrixXd> prior;                  ///< counts beside the poses
+  std::vector<std::pair<double, Eigen::MatrixXd>> test;  ///< weight, AᵀA of a test point (m²)
+  Eigen::VectorXd singular_values;                       ///< interest columns, nuisance eliminated, descending
+};
+
+/// Gain of each candidate at the best weights.
+struct ReportCandidates {
+  std::vector<double> sensitivity;         ///< divided by what a candidate must reach to be worth measuring
+  std::vector<Eigen::Vector3d> positions;  ///< of the tip, m
+  std::vector<int> chosen;                 ///< those that are poses of the plan
+};
+
+/// A serial arm as the page moves it: value of joint k = multiplier · coordinate + offset, about or along its axis
+/// behind its placement in the frame before.
+struct ReportChain {
+  struct Joint {
+    Eigen::Isometry3d X_ParentJoint = Eigen::Isometry3d::Identity();
+    Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
+    bool prismatic = false;
+    double multiplier = 1.0, offset = 0.0;
+    int coordinate = 0;  ///< among those that are written of a pose
+  };
+  Eigen::Isometry3d X_MeasureBase = Eigen::Isometry3d::Identity();
+  std::vector<Joint> joints;
+  Eigen::Isometry3d X_LastTip = Eigen::Isometry3d::Identity();
+  std::vector<Eigen::Vector3d> targets;  ///< tip frame, m
+};
+
+/// A camera, its board and where the camera will see the board's points.
+struct ReportCamera {
+  bool on_tip =
+      false;  ///< the camera rides on the tip and the board stands in the measurement frame, else the other way
+  Eigen::Isometry3d X_CarrierCamera = Eigen::Isometry3d::Identity(), X_CarrierBoard = Eigen::Isometry3d::Identity();
+  double width = 0, height = 0;                                 ///< px
+  std::vector<Eigen::Vector3d> corners;                         ///< lines of sight of the picture's corners, z = 1
+  std::vector<std::pair<std::string, Eigen::Vector3d>> points;  ///< board frame, m
+  /// By pose id: u, v of every point, px; NaN: not predicted.
+  std::vector<std::pair<int, std::vector<Eigen::Vector2d>>> pictures;
+};
+
+/// Data for poses moved by the page's reader: by whole steps of one or two coordinates to either side of a pose,
+/// all of them looked at. `places` says their order.
+struct ReportNeighbours {
+  struct Coordinate {
+    int index = 0;      ///< among those that are written of a pose
+    double step = 0.0;  ///< rad or m
+    double lower = 0.0, upper = 0.0;
+  };
+  /// One pose's; places in the order of `places`.
+  struct Pose {
+    int id = 0;
+    std::vector<double> steps;      ///< of this pose: those of the coordinates, halved as often as its blocks needed it
+    std::vector<int> verdicts;      ///< index into reasons; −1: feasible
+    std::vector<bool> told;         ///< whether the interpolated block stands for the model's there
+    std::vector<double> clearance;  ///< m; empty: nothing is checked for collision
+    std::vector<int> between;       ///< index into bodies; −1: none
+    /// Whitened blocks times tolerance near the pose: B(k) = T₀ + Σ k_i T_i + Σ_{i≤j} k_i k_j T_ij with the steps k,
+    /// terms in this order, rows × columns each, as whole numbers: entry · scale[order][column], order 0, 1, 2.
+    int rows = 0;
+    std::vector<std::int16_t> terms;
+    std::array<std::vector<double>, 3> scale;
+    /// Instead of a chain: what is drawn at one step of each coordinate.
+    std::vector<ReportKeyframe> drawn;
+  };
+  int reach = 0;  ///< steps to either side
+  std::vector<Coordinate> coordinates;
+  std::vector<std::vector<int>> places;  ///< k of every coordinate
+  std::vector<std::string> reasons;
+  std::vector<std::pair<std::string, std::string>> bodies;
+  std::vector<Pose> poses;
+  /// Over all places that are told: |Δ log det| / parameters of interest, largest |Δσ|/σ, |Δρ0|/ρ0, of the plan with
+  /// that pose moved alone.
+  double efficiency_error = 0.0, sigma_error = 0.0, accuracy_error = 0.0;
+};
+
+/// Data of the report's page besides plan and route.
+struct Report {
+  std::string title;
+  std::vector<std::string> notes;     ///< what the reader should know before trusting it
+  std::string plan_json, route_json;  ///< as their files are; route empty: none
+  std::vector<std::string> frames;    ///< the first is fixed
+  std::vector<ReportBody> bodies;
+  std::vector<std::pair<std::string, Eigen::Isometry3d>> stations;
+  std::vector<std::string> targets;
+  std::vector<std::pair<std::string, std::string>> actuators;  ///< of a parallel robot: name and unit of each
+  std::vector<ReportKeyframe> keyframes;                       ///< in measuring order
+  ReportInformation information;
+  std::optional<ReportCandidates> candidates;
+  std::optional<ReportChain> chain;
+  std::optional<ReportCamera> camera;
+  std::optional<ReportNeighbours> neighbours;
+  std::string why_no_neighbours;        ///< if there are none
+  std::vector<double> position_errors;  ///< predicted, at feasible configurations spread like the candidates, m
+  std::vector<CurvePoint> curve;        ///< other numbers of poses; worst_sigma is σ / tolerance
+  std::vector<std::optional<CurvePoint>> prefix;  ///< after each pose in measuring order; none: not identifiable yet
+};
+
+/// Result of another command than plan, for the page.
+struct ResultReport {
+  std::string title;        ///< the robot
+  std::string file;         ///< where the result was read from
+  std::string result_json;  ///< as the file is
+  bool ended = false;       ///< the result itself says that nothing more comes
+  double refresh = 0.0;     ///< s after which the page reads itself again; 0: never
+};
+
+/// Two plans beside each other.
+struct TwoPlansReport {
+  std::string title;
+  std::array<std::string, 2> files;
+  std::array<Report, 2> plans;
+};
+
+/// Schemas posewright/report/1, posewright/report-of-result/1, posewright/report-of-two-plans/1 (docs/report.md).
+std::string report_json(const Report& report);
+std::string report_json(const ResultReport& report);
+std::string report_json(const TwoPlansReport& report);
+/// The page: one file, no network.
+std::string report_html(const Report& report);
+std::string report_html(const ResultReport& report);
+std::string report_html(const TwoPlansReport& report);
+
+}  // namespace posewright

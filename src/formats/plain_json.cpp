@@ -1,0 +1,46 @@
+#include "formats.hpp"
+#include "posewright/formats/json_values.hpp"
+#include "posewright/support/json.hpp"
+#include "program.hpp"
+
+// Schema posewright/poses/1.
+
+namespace posewright::formats {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Exported write_plain_json(const PoseSequence& all, const ExportOptions&) {
+  const PoseSequence sequence = to_measure(all);
+  Json json = {{"schema", "posewright/poses/1"}, {"names", sequence.names}, {"units", sequence.units}};
+  json["poses"] = Json::array();
+  for (const SequencePose& pose : sequence.poses) {
+    Json entry = {{"id", pose.id}, {"values", pose.values}};
+    write_choices(entry, pose.choices, false);
+    json["poses"].push_back(entry);
+  }
+  return one_file("poses.json", json_text(json));
+}
+
+PoseTable read_plain_json(const std::string& bytes, const std::string& file) {
+  return table_of(parse_sequence(bytes, file));
+}
+
+}  // namespace
+
+PoseFormat plain_json() {
+  PoseFormat format = {"json",
+                       "names, units and values, SI",
+                       "anything; plan.json and route.json are read too",
+                       ".json",
+                       "",
+                       {},
+                       false,
+                       false,
+                       write_plain_json,
+                       read_plain_json};
+  format.any_coordinates = true;
+  return format;
+}
+
+}  // namespace posewright::formats

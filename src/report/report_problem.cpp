@@ -1,0 +1,388 @@
+#include "posewright/report/report_problem.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+#include "posewright/lists/parameters_file.hpp"
+#include "posewright/lists/read_poses.hpp"
+#include "posewright/problem/design_keys.hpp"
+#include "posewright/report/report_result.hpp"
+#include "posewright/study/accuracy_points.hpp"
+#include "posewright/study/judgement.hpp"
+#include "posewright/study/pose_distance.hpp"
+#include "posewright/study/study.hpp"
+#include "posewright/study/unmodelled.hpp"
+#include "posewright/study/written_plan.hpp"
+#include "posewright/support/error.hpp"
+#include "posewright/support/json.hpp"
+#include "posewright/support/parallel.hpp"
+#include "posewright/support/text_file.hpp"
+#include "report_neighbours.hpp"
+#include "report_scene.hpp"
+
+namespace posewright {
+namespace {
+
+// Other numbers of poses, as shares of the plan's own.
+constexpr double shares[] = {0.6, 0.8, 1.25, 1.6, 2.0};
+// Enough for a curve that shows what a few poses more bring. Few poses leave more to a search than many, whose kicks
+// take longer: so many kicks for the plan's own number, of other numbers as many as its square is smaller or larger.
+constexpr int curve_restarts = 1;
+constexpr double curve_kicks = 6;
+// Those of the largest gain are as good as all: so many for each pose of the plan.
+constexpr std::size_t promising_per_pose = 10;
+// Of weights that are starts for a search, and of what the page shows of candidates to three digits.
+constexpr double start_tolerance = 1e-2, shown_tolerance = 1e-4;
+// Relative difference of log det that rounding of written configurations cannot make.
+constexpr double same_log_det = 1e-6;
+
+/// As the plan was made, but with short searches that stay among the candidates.
+Problem reported_problem(const Problem& problem, const WrittenPlan& plan) {
+  Problem searched = as_written(problem, plan);
+  set(searched, "design.method", "exchange", "report");
+  set(searched, "design.restarts", std::to_string(curve_restarts), "report");
+  return searched;
+}
+
+/// What was measured before is in the plan, wherever it came from.
+Study reported_study(const Problem& problem, const WrittenPlan& plan, const PoseList& list, int threads,
+                     const Monitor& monitor) {
+  RunOptions run;
+  run.seed = plan.seed;
+  run.threads = threads;
+  run.measured.emplace();
+  for (std::size_t i = 0; i < list.configurations.size(); ++i)
+    if (list.measured[i]) run.measured->configurations.push_back(list.configurations[i]);
+  return choose_criterion(make_study(resolve(problem, run, monitor), monitor), plan.poses);
+}
+
+/// A plan's text with the poses of its route in the place of those that they replace.
+struct DrivenPlan {
+  std::string text;
+  std::vector<std::string> notes;  ///< one a replaced pose
+};
+
+/// The pose of this id; null if there is none.
+template <class Json>
+Json* pose_of_id(Json& poses, const nlohmann::ordered_json& id) {
+  for (auto& pose : poses)
+    if (pose.at("id") == id) return &pose;
+  return nullptr;
+}
+
+void take_over(nlohmann::ordered_json& pose, const nlohmann::ordered_json& stop) {
+  pose.erase("listed");
+  pose["candidate"] = nullptr;
+  for (const auto& [key, value] : stop.items()) pose[key] = value;
+}
+
+DrivenPlan driven_plan(std::string plan, const std::string& route) {
+  DrivenPlan driven{std::move(plan), {}};
+  try {
+    const auto way = parse_ordered_json(route);
+    if (way.value("replaced", nlohmann::ordered_json::array()).empty()) return driven;
+    auto json = parse_ordered_json(driven.text);
+    for (const auto& lost : way.at("replaced")) {
+      auto* pose = pose_of_id(json.at("poses"), lost.at("pose"));
+      const auto* stop = pose_of_id(way.at("poses"), lost.at("by"));
+      if (pose == nullptr || stop == nullptr) continue;
+      take_over(*pose, *stop);
+      driven.notes.push_back(fmt::format("Pose {} is replaced by pose {} of the route: {}.", lost.at("pose").get<int>(),
+                                         lost.at("by").get<int>(), lost.at("reason").get<std::string>()));
+    }
+    driven.text = json_text(json);
+  } catch (const nlohmann::json::exception&) {
+    // Playing the route says what is wrong with it.
+  }
+  return driven;
+}
+
+class ReportBuilder {
+ public:
+  ReportBuilder(const Problem& problem, const std::filesystem::path& file, const ReportOptions& options,
+                const Monitor& monitor)
+      : options_(options),
+        monitor_(monitor),
+        plan_(read_written_plan(file)),
+        problem_(reported_problem(problem, plan_)),
+        list_(driven_list()),
+        study_(reported_study(problem_, plan_, list_, options.threads, monitor)) {
+    // A shortened set of candidates would be shown as if it were whole.
+    if (monitor.should_stop()) throw CannotDo("the report was stopped before its first part was finished");
+    all_.dimension = new_.dimension = study_.configurations.dimension;
+    for (std::size_t i = 0; i < list_.configurations.size(); ++i) {
+      append(all_, list_.configurations[i]);
+      if (!list_.measured[i]) append(new_, list_.configurations[i]);
+    }
+  }
+
+  Report make() {
+    report_.title = title_of(problem_.file);
+    const Judgement judgement = judge(study_, new_);
+    note_changes(judgement);
+    note_effect(judgement);
+    fill_information(judgement);
+    std::vector<std::pair<int, std::vector<double>>> poses;
+    for (std::size_t i = 0; i < list_.ids.size(); ++i) poses.emplace_back(list_.ids[i], list_.configurations[i]);
+    const auto& coordinates = study_.first().workspace->coordinates();
+    const Drawing drawing(problem_, *study_.cell);
+    fill_scene(report_, drawing, poses, coordinates, options_.route);
+    fill_pictures();
+    for (const Coordinate& c : study_.first().model->actuators()) report_.actuators.emplace_back(c.name, c.unit);
+    fill_prefix();
+    fill_position_errors(judgement);
+    fill_moves(drawing, poses);
+    if (options_.candidates || options_.sizes) find_gains();
+    if (options_.candidates) fill_candidates();
+    if (options_.sizes) fill_curve();
+    return std::move(report_);
+  }
+
+ private:
+  /// The poses of the plan, as the route has them; takes its text into the report.
+  PoseList driven_list() {
+    if (!options_.route.empty()) report_.route_json = read_text(options_.route, plan_size_limit);
+    DrivenPlan driven = driven_plan(std::move(plan_.text), report_.route_json);
+    report_.plan_json = std::move(driven.text);
+    report_.notes = std::move(driven.notes);
+    return read_poses_text(report_.plan_json, plan_.file.string(), pose_coordinates(problem_));
+  }
+
+  void note_changes(const Judgement& judgement) {
+    const double stated = plan_.log_det;
+    const double found = judgement.evaluations.front().log_det;
+    if (plan_.problem_sha256 != problem_.sha256)
+      report_.notes.push_back(
+          "The problem file has changed since the plan was made: figures of the plan are for the old file, recomputed "
+          "ones for the new file.");
+    else if (std::string note = parameters_note("The plan", plan_.parameters_file, parameters_of(problem_));
+             !note.empty())
+      report_.notes.push_back(note + ".");
+    else if (!report_.notes.empty())
+      report_.notes.push_back("Figures of the plan are for its own poses, recomputed ones for those of the route.");
+    else if (!(std::abs(found - stated) <= same_log_det * std::max(1.0, std::abs(stated))))
+      report_.notes.push_back(fmt::format(
+          "The plan states log det {:.9g}, its poses give {:.9g}: files that the problem names may have changed.",
+          stated, found));
+    if (study_.variants.size() > 1)
+      report_.notes.push_back("The plan serves several variants; recomputed figures are for '" +
+                              study_.first().spec->name + "'.");
+  }
+
+  void note_effect(const Judgement& judgement) {
+    if (judgement.unmodelled)
+      report_.notes.push_back(
+          "The plan includes an unmodelled effect. Figures of the plan include it; figures recomputed for a part of "
+          "the poses do not.");
+  }
+
+  void fill_information(const Judgement& judgement) {
+    const Variant& variant = study_.first();
+    const VariantColumns& columns = variant.columns;
+    ReportInformation& information = report_.information;
+    const auto m = Eigen::Index(columns.selected.size());
+    Eigen::VectorXd tolerance(m);
+    for (Eigen::Index j = 0; j < m; ++j) {
+      information.columns.push_back(
+          {columns.parameters[std::size_t(j)], study_.variants.size() > 1 ? variant.spec->name : "", {}, {}});
+      tolerance[j] = columns.parameters[std::size_t(j)].tolerance;
+    }
+    const BlockArray blocks = build_blocks(*variant.model, columns.selected, all_, options_.threads);
+    for (std::size_t i = 0; i < blocks.count(); ++i) {
+      const Eigen::MatrixXd scaled = blocks.block(i) * tolerance.asDiagonal();
+      information.poses.emplace_back(list_.ids[i], scaled.transpose() * scaled);
+    }
+    if (study_.prior) information.prior = Eigen::MatrixXd::Identity(m, m);
+    for (const TestPoint& point : variant.test_points) {
+      const Eigen::MatrixXd scaled = point.A * tolerance.asDiagonal();
+      information.test.emplace_back(point.weight, scaled.transpose() * scaled);
+    }
+    information.singular_values = judgement.evaluations.front().singular_values;
+  }
+
+  std::optional<CurvePoint> point_of(const Configurations& list, int poses) const {
+    try {
+      const Judgement judgement = judge(study_, list);
+      const Evaluation& e = judgement.evaluations.front();
+      CurvePoint point{poses, e.log_det, judgement.rho0, 0.0, false};
+      const VariantColumns& columns = study_.first().columns;
+      for (std::size_t j = std::size_t(columns.nuisance); j < columns.parameters.size(); ++j)
+        point.worst_sigma = std::max(*point.worst_sigma, e.sigma[Eigen::Index(j)] / columns.parameters[j].tolerance);
+      return point;
+    } catch (const CannotDo&) {
+      return std::nullopt;
+    }
+  }
+
+  /// After the first, second, … new pose in measuring order.
+  void fill_prefix() {
+    Configurations list;
+    list.dimension = new_.dimension;
+    // A closed tour shows its first pose twice.
+    std::set<int> seen;
+    for (const ReportKeyframe& keyframe : report_.keyframes) {
+      if (!keyframe.pose || *keyframe.pose < 1 || !seen.insert(*keyframe.pose).second) continue;
+      const auto i = std::size_t(std::find(list_.ids.begin(), list_.ids.end(), *keyframe.pose) - list_.ids.begin());
+      if (list_.measured[i]) continue;
+      append(list, all_[i]);
+      report_.prefix.push_back(point_of(list, int(list.count())));
+    }
+  }
+
+  /// Predicted pixels of the board's points.
+  void fill_pictures() {
+    if (!report_.camera) return;
+    Eigen::VectorXd pixels;
+    for (std::size_t i = 0; i < list_.ids.size(); ++i) {
+      if (!study_.first().model->predict(list_.configurations[i], {}, pixels)) continue;
+      std::vector<Eigen::Vector2d> points;
+      for (Eigen::Index k = 0; k + 1 < pixels.size(); k += 2) points.emplace_back(pixels[k], pixels[k + 1]);
+      report_.camera->pictures.emplace_back(list_.ids[i], std::move(points));
+    }
+  }
+
+  void fill_moves(const Drawing& drawing, const std::vector<std::pair<int, std::vector<double>>>& poses) {
+    if (!options_.moves) {
+      report_.why_no_neighbours = "--brief left it out";
+      return;
+    }
+    std::vector<std::pair<int, std::vector<double>>> open;
+    for (std::size_t i = 0; i < poses.size(); ++i)
+      if (!list_.measured[i]) open.push_back(poses[i]);
+    fill_neighbours(report_, study_, drawing, open, options_.threads, monitor_);
+  }
+
+  std::vector<SearchPart> parts_of(const Configurations& candidates) const {
+    return search_parts(study_, study_.criterion, candidates, options_.threads);
+  }
+
+  /// Gain of each candidate, divided by what one must reach to be worth measuring; none if the criterion has no bound.
+  void find_gains() {
+    const Configurations& pool = study_.configurations;
+    if (double(plan_.poses) > double(pool.count()) * study_.repeats.most) return;
+    SearchRequest request = search_request(study_, plan_.poses);
+    request.bound_tolerance = shown_tolerance;
+    Bound bound = bound_only(parts_of(pool), request, monitor_);
+    if (monitor_.should_stop() || !(bound.price > 0)) return;
+    gains_ = std::move(bound.sensitivity);
+    for (double& gain : gains_) gain /= bound.price;
+  }
+
+  /// Candidates for plans of other numbers of poses.
+  Configurations promising() const {
+    const Configurations& pool = study_.configurations;
+    const std::size_t count = std::min(pool.count(), promising_per_pose * new_.count());
+    if (gains_.empty() || count == pool.count()) return pool;
+    std::vector<std::size_t> order(pool.count());
+    std::iota(order.begin(), order.end(), std::size_t(0));
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return gains_[a] > gains_[b]; });
+    Configurations best;
+    best.dimension = pool.dimension;
+    for (std::size_t k = 0; k < count; ++k) append(best, pool, order[k]);
+    return best;
+  }
+
+  void fill_position_errors(const Judgement& judgement) {
+    const Variant& variant = study_.first();
+    // With an unmodelled effect parameters are not all that the error comes from.
+    if (variant.effect != nullptr || variant.model->tips() != 1) return;
+    std::vector<TestPlace> places;
+    const std::vector<TestPoint> points = test_points_at_candidates(study_.configurations, variant, places);
+    predicted_error(points, judgement.evaluations.front().covariance, report_.position_errors);
+    // Where only the instrument is estimated (a camera and its board) nothing is said of where the tip goes.
+    std::vector<double>& errors = report_.position_errors;
+    if (std::none_of(errors.begin(), errors.end(), [](double e) { return e > 0; })) errors.clear();
+  }
+
+  void fill_candidates() {
+    const Configurations& pool = study_.configurations;
+    if (monitor_.should_stop()) report_.notes.emplace_back("Stopped early: the gain of each candidate is left out.");
+    if (gains_.empty()) return;
+    ReportCandidates candidates;
+    candidates.sensitivity = gains_;
+    for (std::size_t i = 0; i < pool.count(); ++i) {
+      candidates.positions.push_back(study_.first().model->tool_pose(pool[i]).translation());
+      for (std::size_t k = 0; k < new_.count(); ++k)
+        if (std::equal(pool[i].begin(), pool[i].end(), new_[k].begin())) {
+          candidates.chosen.push_back(int(i));
+          break;
+        }
+    }
+    report_.candidates = std::move(candidates);
+  }
+
+  /// A plan of so many of the candidates; none if they do not determine the parameters, or after a stop.
+  std::optional<CurvePoint> curve_at(int poses, const Configurations& pool, const std::vector<SearchPart>& parts,
+                                     const Spacing& apart) const {
+    try {
+      SearchRequest wanted = search_request(study_, poses);
+      if (study_.distance.kept) wanted.spacing = &apart;
+      wanted.bound_tolerance = start_tolerance;
+      const double share = double(new_.count()) / poses;
+      wanted.planner.kicks = int(std::lround(curve_kicks * share * share));
+      const SearchResult found = search(copied_parts(parts), wanted, monitor_);
+      if (monitor_.should_stop()) return std::nullopt;  // not the best plan of so many
+      return point_of(chosen_by(found.design, pool), poses);
+    } catch (const CannotDo&) {
+      return std::nullopt;
+    }
+  }
+
+  void fill_curve() {
+    const int own = int(new_.count());
+    const Configurations pool = promising();
+    const double most = double(pool.count()) * study_.repeats.most;
+    std::set<int> numbers;
+    for (const double share : shares)
+      if (const int poses = int(std::lround(share * own)); poses >= 1 && poses != own && poses <= most)
+        numbers.insert(poses);
+    // What takes longest comes first: no thread is left with it at the end.
+    const std::vector<int> wanted(numbers.rbegin(), numbers.rend());
+    std::vector<std::optional<CurvePoint>> points(wanted.size());
+    std::atomic<int> done = 0;
+    std::atomic<bool> left_out = false;
+    std::vector<SearchPart> parts;
+    if (!wanted.empty()) parts = parts_of(pool);
+    const Spacing apart = with_points(study_.distance.spacing, pool);
+    // One search of few restarts keeps no second thread busy.
+    parallel_for(wanted.size(), thread_count(options_.threads), [&](std::size_t i, int) {
+      if (monitor_.should_stop()) {
+        left_out = true;
+        return;
+      }
+      points[i] = curve_at(wanted[i], pool, parts, apart);
+      if (monitor_.should_stop()) left_out = true;
+      monitor_.report({"other numbers of poses", double(++done), double(wanted.size()), {}, {}, {}});
+    });
+    if (left_out) report_.notes.emplace_back("Stopped early: some numbers of poses are left out of the curve.");
+    for (const std::optional<CurvePoint>& point : points)
+      if (point) report_.curve.push_back(*point);
+    if (const auto point = point_of(new_, own)) report_.curve.push_back(*point);
+    std::sort(report_.curve.begin(), report_.curve.end(),
+              [](const auto& a, const auto& b) { return a.poses < b.poses; });
+  }
+
+  const ReportOptions& options_;
+  const Monitor& monitor_;
+  Report report_;
+  WrittenPlan plan_;  // its text is in the report
+  const Problem problem_;
+  const PoseList list_;  // the poses of the plan
+  const Study study_;
+  Configurations all_, new_;
+  std::vector<double> gains_;  // of the candidates
+};
+
+}  // namespace
+
+Report report_problem(const Problem& problem, const std::filesystem::path& plan, const ReportOptions& options,
+                      const Monitor& monitor) {
+  return ReportBuilder(problem, plan, options, monitor).make();
+}
+
+}  // namespace posewright

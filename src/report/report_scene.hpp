@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <vector>
+
+#include "posewright/cell/drawing.hpp"
+#include "posewright/report/report.hpp"
+
+namespace posewright {
+
+/// Fills what the report draws: bodies, stations, targets, and the robot at every pose and, along a route, between
+/// them.
+/// @param poses  configuration of each pose of the plan by its id
+/// @param route_file  empty: there is no route
+/// Throws InputError for a route that names poses or coordinates that are not there.
+void fill_scene(Report& report, const Drawing& drawing, const std::vector<std::pair<int, std::vector<double>>>& poses,
+                const std::vector<Coordinate>& coordinates, const std::filesystem::path& route_file);
+
+/// Drawing of one configuration.
+ReportKeyframe keyframe_at(const Drawing& drawing, std::span<const double> q);
+
+}  // namespace posewright

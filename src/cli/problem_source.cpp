@@ -1,5 +1,8 @@
 #include "problem_source.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 #include "posewright/lists/parameters_file.hpp"
 #include "posewright/model/apply_parameters.hpp"
 #include "posewright/problem/design_keys.hpp"
@@ -18,6 +21,17 @@ void add_package_option(po::options_description& options) {
 
 void apply(Problem& problem, const std::filesystem::path& file, const std::vector<std::string>& asked) {
   print_notes(apply_parameters(problem, read_calibrated_parameters(file), asked));
+}
+
+KeyEdits edits_of(const po::variables_map& values) {
+  KeyEdits edits;
+  if (values.count("set") == 0) return edits;
+  for (const std::string& text : values["set"].as<Words>()) {
+    const std::size_t equal = text.find('=');
+    if (equal == std::string::npos) throw InputError({}, "--set " + text.substr(0, 60), "KEY=VALUE is expected");
+    edits.push_back({text.substr(0, equal), text.substr(equal + 1)});
+  }
+  return edits;
 }
 
 }  // namespace
@@ -47,7 +61,7 @@ po::options_description package_options() {
 
 void add_set_option(po::options_description& options) {
   options.add_options()("set", po::value<Words>()->value_name("KEY=VALUE")->composing(),
-                        "key of the design in place of the file's: design.minimum_distance='5 deg'");
+                        "value of a key in place of the file's: measurement.device.noise='0.05 mm'");
 }
 
 po::options_description problem_options() {
@@ -66,16 +80,14 @@ std::vector<std::string> variants_of(const po::variables_map& values) {
   return names_of({"--variant", several != nullptr ? *several : Words{boost::any_cast<const std::string&>(given)}});
 }
 
-Problem given_problem(const std::filesystem::path& file, const po::variables_map& values) {
-  Problem problem = read_problem(file, packages_of(values));
+Problem given_problem(const std::filesystem::path& file, const po::variables_map& values, KeyEdits changed) {
+  const auto is_of_design = [](const KeyEdit& edit) { return edit.key == "design" || edit.key.starts_with("design."); };
+  const KeyEdits edits = edits_of(values);
+  std::ranges::remove_copy_if(edits, std::back_inserter(changed), is_of_design);
+  Problem problem = read_problem(file, packages_of(values), changed);
   if (values.count("parameters") > 0) apply(problem, text_of(values, "parameters"), variants_of(values));
-  if (values.count("set") == 0) return problem;
-  for (const std::string& text : values["set"].as<Words>()) {
-    const std::size_t equal = text.find('=');
-    if (equal == std::string::npos) throw InputError({}, "--set " + text.substr(0, 60), "KEY=VALUE is expected");
-    const std::string key = text.substr(0, equal);
-    set(problem, key, text.substr(equal + 1), "--set " + key);
-  }
+  for (const KeyEdit& edit : edits)
+    if (is_of_design(edit)) set(problem, edit.key, edit.value, "--set " + edit.key);
   return problem;
 }
 
@@ -86,7 +98,7 @@ std::filesystem::path problem_file(const po::variables_map& values, const std::f
 
 Problem problem_for_plan(const std::filesystem::path& file, const po::variables_map& values,
                          const std::filesystem::path& plan) {
-  Problem problem = given_problem(file, values);
+  Problem problem = given_problem(file, values, edits_of_plan(plan));
   if (problem.parameters) return problem;
   if (const ParametersFile stated = parameters_of_plan(plan); !stated.file.empty())
     apply(problem, stated.file, {stated.variant});

@@ -23,11 +23,12 @@ std::vector<std::string> variants_of(const po::variables_map& values);
 /// The problem file with what these options say. Variants that keep their nominal values are told on stderr.
 /// Throws InputError as read_problem and apply_parameters, for a package without name or folder, and for a folder that
 /// is not there.
-Problem given_problem(const std::filesystem::path& file, const po::variables_map& values);
+/// @param changed  keys that a plan states; --set comes after them
+Problem given_problem(const std::filesystem::path& file, const po::variables_map& values, KeyEdits changed = {});
 
 /// The problem file of a plan: --problem, else the one that the plan names. Throws InputError if there is none.
 std::filesystem::path problem_file(const po::variables_map& values, const std::filesystem::path& plan);
-/// given_problem() of that file; without --parameters at the parameters that the plan states.
+/// given_problem() of that file with the keys that the plan states; without --parameters at its parameters.
 Problem problem_for_plan(const std::filesystem::path& file, const po::variables_map& values,
                          const std::filesystem::path& plan);
 

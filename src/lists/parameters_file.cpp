@@ -47,6 +47,20 @@ ParametersFile parameters_of(const Problem& problem) {
   return {problem.parameters->file.string(), problem.parameters->sha256, problem.parameters->variant.value};
 }
 
+KeyEdits edits_of_plan(const std::filesystem::path& plan) {
+  KeyEdits edits;
+  try {
+    const auto json = parse_json(read_text(plan, plan_size_limit));
+    const nlohmann::json::json_pointer key("/problem/set");
+    if (!json.is_object() || !json.contains(key)) return {};
+    for (const auto& edit : json.at(key))
+      edits.push_back({edit.at("key").get<std::string>(), edit.at("value").get<std::string>()});
+  } catch (const nlohmann::json::exception&) {
+    return {};
+  }
+  return edits;
+}
+
 ParametersFile parameters_of_plan(const std::filesystem::path& plan) {
   ParametersFile stated;
   try {

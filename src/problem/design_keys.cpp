@@ -104,13 +104,11 @@ void read_candidates_from(const Value& value, DesignReading& reading) {
   DesignSpec& design = reading.design;
   if (stated_together(design.candidates.line, value.line()))
     value.fail("cannot be combined with candidates", "leave one of them out");
-  design.candidates_from = {reading.folder / value.text("a file is expected"), value.line()};
+  design.candidates_from = {value.file(reading.folder), value.line()};
 }
 
 Read file(std::optional<std::filesystem::path> DesignSpec::*member) {
-  return [=](const Value& value, DesignReading& reading) {
-    reading.design.*member = reading.folder / value.text("a file is expected");
-  };
+  return [=](const Value& value, DesignReading& reading) { reading.design.*member = value.file(reading.folder); };
 }
 
 void read_repeats(const Value& value, DesignReading& reading) {

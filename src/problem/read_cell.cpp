@@ -35,8 +35,8 @@ constexpr std::array<ShapeReader, 4> shapes = {
 ShapeSpec read_mesh(const Section& section, const Value& mesh, const std::filesystem::path& folder) {
   const std::string name = mesh.text("a file name is expected");
   MeshShape shape;
-  shape.file =
-      name.starts_with("package://") || name.starts_with("file://") ? std::filesystem::path(name) : folder / name;
+  shape.file = name.starts_with("package://") || name.starts_with("file://") ? std::filesystem::path(name)
+                                                                             : mesh.base(folder) / name;
   if (const Value* scale = section.find("scale"))
     shape.scale = scale->is_list() ? scale->vector(Quantity::number, Sign::positive)
                                    : Eigen::Vector3d::Constant(scale->number(Quantity::number, Sign::positive));
@@ -72,7 +72,7 @@ BodySpec read_body(const Value& value, const std::string& name, const std::files
 ObstacleFileSpec read_obstacle_file(const Section& section, const std::filesystem::path& folder) {
   section.allow({"file", "at", "rpy", "except"});
   ObstacleFileSpec spec;
-  spec.file = folder / section.at("file").text("a file name is expected");
+  spec.file = section.at("file").file(folder);
   spec.line = section.at("file").line();
   if (const Value* at = section.find("at")) spec.placement.position = at->vector(Quantity::length);
   if (const Value* rpy = section.find("rpy")) spec.placement.rpy = rpy->vector(Quantity::angle);
@@ -143,8 +143,7 @@ CollisionSpec read_collision(const Value& value, const std::filesystem::path& fo
   if (const Value* clearance = section.find("clearance"))
     collision.clearance = clearance->number(Quantity::length, Sign::not_negative);
   if (const Value* clearance = section.find("self_clearance")) read_self_clearance(*clearance, collision);
-  if (const Value* srdf = section.find("srdf"))
-    collision.srdf = {folder / srdf->text("a file name is expected"), srdf->line()};
+  if (const Value* srdf = section.find("srdf")) collision.srdf = {srdf->file(folder), srdf->line()};
   if (const Value* ignore = section.find("ignore"))
     for (const Value& pair : ignore->items("a list of pairs is expected")) {
       const std::vector<Value> names = pair.items(2, "two names are expected");

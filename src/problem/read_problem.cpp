@@ -23,28 +23,35 @@ void require_known_version(const yaml::Section& root) {
 
 }  // namespace
 
-Problem read_problem(const fs::path& file, const Packages& packages) {
+Problem read_problem(const fs::path& file, const Packages& packages, const KeyEdits& changed) {
   std::error_code code;
   // A device may never end.
   if (fs::is_character_file(file, code) || fs::is_block_file(file, code))
     throw InputError({file.string(), 0}, "is a device", "a file is needed");
-  return parse_problem(read_file(file, size_limit), file, packages);
+  return parse_problem(read_file(file, size_limit), file, packages, changed);
 }
 
-Problem parse_problem(const std::string& text, const fs::path& file, const Packages& packages) {
+Problem parse_problem(const std::string& text, const fs::path& file, const Packages& packages,
+                      const KeyEdits& changed) {
   const std::string file_name = file.string();
   if (text.size() > size_limit)
     throw InputError({file_name, 0}, fmt::format("has {} bytes", text.size()),
                      fmt::format("at most {} are read", size_limit));
   require_text(text, file_name);
-  const yaml::Section root(yaml::Value(yaml::load_document(text, file_name), 1, "", file_name));
+  YAML::Node document = yaml::load_document(text, file_name);
+  yaml::change_keys(document, changed);
+  const yaml::Section root(yaml::Value(document, 1, "", file_name));
   // A later version may have other keys, so it is judged first.
   require_known_version(root);
   root.allow({"posewright", "robot", "measurement", "variants", "workspace", "design"});
 
   Problem problem;
   problem.file = file;
-  problem.sha256 = sha256_hex(text);
+  std::string hashed = text;
+  for (const auto& [key, value] : changed) hashed += "\n--set " + key + "=" + value;
+  problem.sha256 = sha256_hex(hashed);
+  problem.changed = changed;
+  for (const KeyEdit& edit : changed) problem.edits.push_back("--set " + edit.key);
   const yaml::Value& robot = root.at("robot");
   problem.packages = packages;
   problem.robot = read_robot(robot, file, packages);

@@ -88,10 +88,10 @@ SerialArmSpec read_serial_arm(const Section& robot, const std::filesystem::path&
   const Value& urdf = robot.at("urdf");
   const std::filesystem::path folder = file.parent_path();
   const std::string name = urdf.text("a file name is expected");
-  arm.urdf = names_package(name) ? file_of_uri(name, packages, file, {file.string(), urdf.line()}) : folder / name;
+  arm.urdf = names_package(name) ? file_of_uri(name, packages, file, urdf.place()) : urdf.base(folder) / name;
   arm.line = urdf.line();
   read_xacro(robot, urdf, arm);
-  if (const Value* srdf = robot.find("srdf")) arm.srdf = {folder / srdf->text("a file name is expected"), srdf->line()};
+  if (const Value* srdf = robot.find("srdf")) arm.srdf = {srdf->file(folder), srdf->line()};
   if (const Value* group = robot.find("group")) {
     arm.group = group->exact_name();
     if (!arm.srdf) group->fail("needs srdf", "srdf: FILE");

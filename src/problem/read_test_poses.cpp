@@ -49,7 +49,7 @@ TestPosesSpec read_test_poses(const Value& value, const std::filesystem::path& f
     weights->fail("is for a list of configurations", "in a file, a column 'weight'");
   if (const Value* random = section.find("random")) spec.random = random->integer(1, most_grid_points);
   if (const Value* at = section.find("at")) read_list(section, *at, spec);
-  if (const Value* file = section.find("file")) spec.file = folder / file->text("a file name is expected");
+  if (const Value* file = section.find("file")) spec.file = file->file(folder);
   if (const Value* grid = section.find("grid")) spec.grid = read_grid(*grid);
   if (const Value* point = section.find("point")) spec.point = point->vector(Quantity::length);
   if (const Value* load = section.find("load_case")) spec.load_case = load->located_text();

@@ -46,9 +46,10 @@ void read_joints(const Section& joints, WorkspaceSpec& workspace, const std::fil
   if (const Value* controller = joints.find("controller")) {
     const std::string name = controller->text("a file name or a known controller is expected");
     const std::vector<std::string> known = known_controllers();
-    if (!is_controller_file(name, folder) && std::find(known.begin(), known.end(), name) == known.end())
+    const std::filesystem::path base = controller->base(folder);
+    if (!is_controller_file(name, base) && std::find(known.begin(), known.end(), name) == known.end())
       refuse_controller(*controller, name, known);
-    workspace.controller = controller_settings(name, folder);
+    workspace.controller = controller_settings(name, base);
     if (workspace.controller->range_deg.empty())
       throw InputError({workspace.controller->file, 0}, "has no range_deg", "the ranges that poses are to keep");
   }

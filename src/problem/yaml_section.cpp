@@ -31,7 +31,11 @@ class DocumentMarks : public YAML::EventHandler {
 
 /// Place of a key of the mapping; of an edit its option.
 SourcePlace place_in(const Value& mapping, int line, int column) {
-  return line < 0 ? SourcePlace{mapping.name()} : SourcePlace{mapping.place().file, line, column};
+  const std::string file = mapping.place().file;
+  if (line >= 0) return {file, line, column};
+  // Edits of the design have no file, and their option for a name.
+  if (file.empty()) return {mapping.name()};
+  return {mapping.name().empty() ? "--set" : "--set " + mapping.name()};
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <Eigen/Core>
+#include <filesystem>
 #include <initializer_list>
 #include <optional>
 #include <string>
@@ -12,6 +13,7 @@
 
 #include "posewright/problem/units.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/support/key_edit.hpp"
 
 /// Strict reading of YAML. yaml-cpp converts leniently and accepts keys that are unknown or given twice, so the
 /// readers of the sections see these wrappers only. Everything here throws InputError with file and line.
@@ -27,7 +29,10 @@ class Value {
   Value(const YAML::Node& node, int line, std::string name, const std::string& file, int column = 0);
 
   int line() const { return line_; }
-  SourcePlace place() const { return {*file_, line_, column_}; }
+  /// "--set" for a value of an edit; a message names the key itself.
+  SourcePlace place() const {
+    return line_ < 0 && !file_->empty() ? SourcePlace{"--set"} : SourcePlace{*file_, line_, column_};
+  }
   const std::string& name() const { return name_; }
   bool is_list() const { return node_.IsSequence(); }
   bool is_mapping() const { return node_.IsMap(); }
@@ -38,6 +43,13 @@ class Value {
   std::string text(const std::string& expected = "a text is expected") const;
   /// Variant that allows an empty text: prefix: "".
   std::string text_or_nothing() const;
+  /// Folder that paths in this value are relative to: the file's, of an edit the working directory.
+  std::filesystem::path base(const std::filesystem::path& folder) const {
+    return line_ < 0 ? std::filesystem::path() : folder;
+  }
+  std::filesystem::path file(const std::filesystem::path& folder) const {
+    return base(folder) / text("a file is expected");
+  }
   Located<std::string> located_text() const { return {text(), line_, column_}; }
   /// Text that names one thing: no `*` or `?`.
   Located<std::string> exact_name() const;
@@ -100,6 +112,10 @@ class Section {
 
 /// The only document in `text`; throws if YAML is malformed, empty or in several documents.
 YAML::Node load_document(const std::string& text, const std::string& file);
+
+/// Sets values of keys by their paths (read_problem()). What they hold has the lines -1, -2, … of the edits. Throws
+/// InputError for a path through a scalar, past a list's end or with an empty name, and for a value that is not YAML.
+void change_keys(YAML::Node& document, const KeyEdits& edits);
 
 /// [lower, upper] with lower < upper, both in the same one of the accepted quantities.
 struct Range {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <utility>
 
 #include "posewright/support/near_words.hpp"
 #include "posewright/support/text.hpp"
@@ -17,12 +18,79 @@ std::string kind(const YAML::Node& node) {
   return "is empty";
 }
 
+/// Mark of an edit's value, and the number of the edit; no tag of a file begins like it.
+constexpr std::string_view edit_tag = "posewright-edit ";
+
+int edit_of(const YAML::Node& node) {
+  const std::string& tag = node.Tag();
+  return tag.starts_with(edit_tag) ? std::stoi(tag.substr(edit_tag.size())) : 0;
+}
+
+YAML::Node marked(YAML::Node node, std::size_t number) {
+  node.SetTag(fmt::format("{}{}", edit_tag, number));
+  return node;
+}
+
+YAML::Node value_of(const KeyEdit& edit, std::size_t number) {
+  const bool flow = edit.value.starts_with('{') || edit.value.starts_with('[');
+  return marked(flow ? load_document(edit.value, "--set " + edit.key) : YAML::Node(edit.value), number);
+}
+
+/// The key of a mapping that a path begins with, the longest where names have points; else up to the first point.
+std::string first_key(const YAML::Node& mapping, const std::string& path) {
+  std::string longest;
+  for (const auto& entry : mapping) {
+    if (!entry.first.IsScalar()) continue;
+    const std::string& key = entry.first.Scalar();
+    if (key.size() > longest.size() && path.starts_with(key) && (path.size() == key.size() || path[key.size()] == '.'))
+      longest = key;
+  }
+  return longest.empty() ? path.substr(0, path.find('.')) : longest;
+}
+
+void change_key(YAML::Node node, const KeyEdit& edit, const std::string& path, std::size_t number) {
+  const auto refuse = [&](const std::string& what, const std::string& allowed) {
+    throw InputError({}, "--set " + in_quotes(edit.key) + " " + what, allowed);
+  };
+  const std::string key = node.IsMap() ? first_key(node, path) : path.substr(0, path.find('.'));
+  if (key.empty()) refuse("has an empty name", "KEY.KEY=VALUE is expected");
+  const bool last = key.size() == path.size();
+  if (!last && key.size() + 1 == path.size()) refuse("ends with a point", "KEY.KEY=VALUE is expected");
+  const std::string rest = last ? "" : path.substr(key.size() + 1);
+  if (node.IsSequence()) {
+    std::size_t index = 0;
+    const auto [end, code] = std::from_chars(key.data(), key.data() + key.size(), index);
+    if (code != std::errc() || end != key.data() + key.size() || index < 1 || index > node.size())
+      refuse("names " + in_quotes(key) + " of a list", fmt::format("its entries are 1 to {}", node.size()));
+    if (last) node[index - 1] = value_of(edit, number);
+    else change_key(node[index - 1], edit, rest, number);
+    return;
+  }
+  if (!node.IsMap())
+    refuse("goes through a value that has no keys", "a key of the problem file (docs/problem-file.md)");
+  const YAML::Node known = std::as_const(node)[key];
+  if (!known) {
+    YAML::Node value = last ? value_of(edit, number) : marked(YAML::Node(YAML::NodeType::Map), number);
+    node.force_insert(marked(YAML::Node(key), number), value);
+    if (!last) change_key(value, edit, rest, number);
+  } else if (last) {
+    node[key] = value_of(edit, number);
+  } else {
+    change_key(known, edit, rest, number);
+  }
+}
+
 }  // namespace
+
+void change_keys(YAML::Node& document, const KeyEdits& edits) {
+  for (std::size_t i = 0; i < edits.size(); ++i) change_key(document, edits[i], edits[i].key, i + 1);
+}
 
 Value::Value(const YAML::Node& node, int line, std::string name, const std::string& file, int column)
     : node_(node), line_(line), column_(column), name_(std::move(name)), file_(&file) {
   // yaml-cpp marks an empty value where the next token begins and a block mapping at its first key.
-  if (line >= 0 && node.IsScalar() && node.Mark().line >= 0)
+  if (const int edit = edit_of(node); edit > 0) line_ = -edit, column_ = 0;
+  else if (line >= 0 && node.IsScalar() && node.Mark().line >= 0)
     line_ = node.Mark().line + 1, column_ = node.Mark().column + 1;
 }
 

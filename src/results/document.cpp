@@ -8,14 +8,14 @@ namespace posewright {
 nlohmann::ordered_json begin_document(const char* schema, const Problem& problem) {
   return {{"schema", schema},
           {"version", version},
-          {"problem", problem_json(problem.file.string(), problem.sha256, parameters_of(problem))}};
+          {"problem", problem_json(problem.file.string(), problem.sha256, parameters_of(problem), problem.changed)}};
 }
 
 nlohmann::ordered_json begin_document(const char* schema, const Problem& problem, std::uint64_t seed) {
   return {{"schema", schema},
           {"version", version},
           {"seed", seed},
-          {"problem", problem_json(problem.file.string(), problem.sha256, parameters_of(problem))}};
+          {"problem", problem_json(problem.file.string(), problem.sha256, parameters_of(problem), problem.changed)}};
 }
 
 }  // namespace posewright

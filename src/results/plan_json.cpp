@@ -125,8 +125,9 @@ nlohmann::ordered_json tool_pose_json(const Eigen::Isometry3d& X) {
 }
 
 nlohmann::ordered_json problem_json(const std::string& file, const std::string& sha256,
-                                    const ParametersFile& parameters) {
+                                    const ParametersFile& parameters, const KeyEdits& changed) {
   Json json = {{"file", file}, {"sha256", sha256}};
+  for (const auto& [key, value] : changed) json["set"].push_back({{"key", key}, {"value", value}});
   if (!parameters.file.empty())
     json["parameters"] = {{"file", parameters.file}, {"sha256", parameters.sha256}, {"variant", parameters.variant}};
   return json;
@@ -243,7 +244,7 @@ std::string plan_json(const Plan& plan, const std::vector<WrittenWith>& files) {
   Json json = {{"schema", "posewright/plan/1"},
                {"version", version},
                {"seed", plan.seed},
-               {"problem", problem_json(plan.problem_file, plan.problem_sha256, plan.parameters_file)}};
+               {"problem", problem_json(plan.problem_file, plan.problem_sha256, plan.parameters_file, plan.changed)}};
   if (!files.empty()) json["files"] = files_json(files);
   if (!plan.variant.empty()) json["variant"] = plan.variant;
   json["method"] = plan.method;

@@ -220,11 +220,11 @@ TestConfigurations reach(const Points& points, const Variant& variant, const Ide
   result.weights = points.weights;
   for (const Eigen::Vector3d& target : points.at) {
     result.configurations.emplace_back();
-    if (!reach.solve(target, result.configurations.back()))
-      throw CannotDo(
-          fmt::format("{}:{}: the robot does not reach the test point ({:.6g}, {:.6g}, {:.6g}) m within its "
-                      "workspace",
-                      variant.problem->file.string(), spec.line, target.x(), target.y(), target.z()));
+    if (reach.solve(target, result.configurations.back())) continue;
+    const SourcePlace place = variant.problem->at(spec.line);
+    throw CannotDo(fmt::format(
+        "{}{}: the robot does not reach the test point ({:.6g}, {:.6g}, {:.6g}) m within its workspace", place.file,
+        place.line > 0 ? fmt::format(":{}", place.line) : "", target.x(), target.y(), target.z()));
   }
   return result;
 }

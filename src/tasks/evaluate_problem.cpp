@@ -58,6 +58,7 @@ class ListEvaluation {
     plan.seed = study_.planner.seed;
     plan.problem_file = problem.file.string();
     plan.problem_sha256 = problem.sha256;
+    plan.changed = problem.changed;
     plan.parameters_file = parameters_of(problem);
     plan.method = "given";
     fill_judgement(plan, judgement, study_);

@@ -182,6 +182,7 @@ class PlanSearch {
     plan.seed = study_.planner.seed;
     plan.problem_file = problem_.file.string();
     plan.problem_sha256 = problem_.sha256;
+    plan.changed = problem_.changed;
     plan.parameters_file = parameters_of(problem_);
     plan.method = study_.method;
     plan.minimum_distance = minimum_distance_;

@@ -1,4 +1,4 @@
-// Option --parameters as a user meets it.
+// Options --parameters and --set as a user meets them.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -103,6 +103,37 @@ TEST(ParametersOption, BadFilesAndOutputsOverItEndWithTwo) {
   EXPECT_THAT(complaint({"--parameters", "none.yaml"}), HasSubstr("none.yaml"));
   EXPECT_THAT(complaint({"--parameters", "cal.yaml", "--force", "-o", "cal.yaml"}), HasSubstr("cal.yaml is an input"));
   EXPECT_EQ(read_file(folder / "cal.yaml"), calibrated);
+}
+
+TEST(SetOption, PlanStatesAnyKeyAndLaterCommandsFindIt) {
+  const TemporaryFolder folder;
+  folder.write("p.yaml", five_bar());
+  std::string text = five_bar();
+  const std::string key = "measurement.device.noise", value = "0.02 deg", before = R"(noise: "0.01 deg"})";
+  ASSERT_NE(text.find(before), std::string::npos);
+  text.replace(text.find(before), before.size(), R"(noise: "0.02 deg"})");
+  folder.write("edited.yaml", text);
+  const ProgramRun plan = run_program(folder.path(), plan_words({"--set", key + "=" + value}));
+  ASSERT_EQ(plan.exit_code, 0) << plan.err;
+  const json stated = json::parse(read_file(folder / "plan.json"));
+  EXPECT_EQ(stated["problem"]["set"], (json{{{"key", key}, {"value", value}}}));
+  std::vector<std::string> words = plan_words({"--json", "-o", "-"});
+  words[1] = "edited.yaml";
+  const ProgramRun edited = run_program(folder.path(), words);
+  ASSERT_EQ(edited.exit_code, 0) << edited.err;
+  EXPECT_EQ(json::parse(edited.out)["criterion"]["log_det"], stated["criterion"]["log_det"]);
+
+  const ProgramRun report = run_program(folder.path(), {"report", "plan.json", "--brief"});
+  EXPECT_EQ(report.exit_code, 0) << report.err;
+  EXPECT_THAT(report.err, testing::Not(HasSubstr("another")));
+  const ProgramRun route = run_program(folder.path(), {"route", "plan.json", "--json"});
+  ASSERT_EQ(route.exit_code, 0) << route.err;
+  EXPECT_EQ(json::parse(route.out)["problem"]["set"], stated["problem"]["set"]);
+  EXPECT_EQ(json::parse(route.out)["problem"]["sha256"], stated["problem"]["sha256"]);
+
+  const ProgramRun wrong = run_program(folder.path(), plan_words({"--set", key + "=fast"}));
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("--set: measurement.device.noise is wrong"));
 }
 
 }  // namespace

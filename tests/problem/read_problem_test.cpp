@@ -284,5 +284,53 @@ TEST_F(ReadProblemFile, WhatIsNoTextFileIsRefused) {
   EXPECT_THAT(error(write("# nothing\n")), HasSubstr("problem.yaml: is empty"));
 }
 
+// The second road: a file in which a person wrote the values.
+TEST(ReadProblem, ChangedKeysAreReadAsIfTheFileHadThem) {
+  const KeyEdits changed = {{"measurement.device.noise", "0.2 mm"},
+                            {"measurement.targets.P2", "[0.1, 0.2, 0.3]"},
+                            {"variants.geometric.tolerance.*.gear", "0.002"},
+                            {"variants.geometric.parameters.2", "joint_3.*"},
+                            {"workspace.joints.limits.joint_a1", "[-1, 1]"}};
+  const Problem found = parse_problem(example::serial, "folder/problem.yaml", {}, changed);
+  std::string text = replaced(example::serial, R"(noise: "0.1 mm")", R"(noise: "0.2 mm")");
+  text = replaced(text, "[0.27649, -0.04825, 0.09405]", "[0.1, 0.2, 0.3]");
+  text = replaced(text, R"("*.gear": 0.001)", R"("*.gear": 0.002)");
+  text = replaced(text, R"("joint_2.*")", R"("joint_3.*")");
+  text = replaced(text, R"(joint_a1: ["-90 deg", "90 deg"])", "joint_a1: [-1, 1]");
+  const Problem written = parse(text);
+  const auto& points = std::get<PointsMeasurement>(found.measurement.instrument);
+  const auto& expected = std::get<PointsMeasurement>(written.measurement.instrument);
+  EXPECT_EQ(std::get<GaussianNoise>(points.noise).covariance, std::get<GaussianNoise>(expected.noise).covariance);
+  ASSERT_EQ(points.targets.size(), 2U);
+  EXPECT_EQ(points.targets[1].position, expected.targets[1].position);
+  EXPECT_EQ(values(found.variants[0].parameters), values(written.variants[0].parameters));
+  ASSERT_EQ(found.variants[0].tolerance.size(), 3U);
+  EXPECT_EQ(found.variants[0].tolerance[2].value, 0.002);
+  ASSERT_EQ(found.workspace.limits.size(), written.workspace.limits.size());
+  EXPECT_NE(found.sha256, sha256_hex(example::serial));
+  EXPECT_EQ(found.at(-1).file, "--set measurement.device.noise");
+}
+
+TEST(ReadProblem, ChangedKeyThatIsWrongIsNamed) {
+  const std::vector<std::pair<KeyEdit, std::string>> wrong = {
+      {{"measurement.device.noise", "fast"}, "--set: measurement.device.noise"},
+      {{"measurement.device.speed", "1"}, "--set measurement.device: unknown key 'speed'"},
+      {{"speed", "1"}, "--set: unknown key 'speed'"},
+      {{"workspace.collision.speed", "1"}, "--set workspace.collision: unknown key 'speed'"},
+      {{"variants.geometric.parameters.9", "a"}, "its entries are 1 to 2"},
+      {{"robot.urdf.name", "a"}, "goes through a value that has no keys"},
+      {{"", "1"}, "has an empty name"},
+      {{"robot.", "1"}, "ends with a point"},
+      {{"measurement.targets", "{P1: ["}, "is not valid YAML"}};
+  for (const auto& [edit, said] : wrong) {
+    try {
+      parse_problem(example::serial, "folder/problem.yaml", {}, {edit});
+      ADD_FAILURE() << edit.key;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(said)) << edit.key;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace posewright

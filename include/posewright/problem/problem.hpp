@@ -14,6 +14,7 @@
 #include "posewright/problem/robot_specs.hpp"
 #include "posewright/problem/units.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/support/key_edit.hpp"
 
 namespace posewright {
 
@@ -75,7 +76,8 @@ struct WorkspaceSpec {
 /// Source of a problem: its file, places of values in it, folders of packages.
 struct ProblemFile {
   std::filesystem::path file;
-  std::string sha256;  ///< of the file's bytes, lower-case hexadecimal
+  std::string sha256;  ///< of the file's bytes, then of `changed`, lower-case hexadecimal
+  KeyEdits changed;    ///< keys that have another value than in the file, beside the design's
   /// Folders of package://NAME/… for URDF and meshes, besides those of find_package().
   Packages packages;
   /// Names of the options that changed the problem, as set() (problem/design_keys.hpp) has them.

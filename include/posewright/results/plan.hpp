@@ -12,6 +12,7 @@
 #include "posewright/blocks/parameter.hpp"
 #include "posewright/blocks/pose_choices.hpp"
 #include "posewright/criterion/observability_indices.hpp"
+#include "posewright/support/key_edit.hpp"
 #include "posewright/support/robust_aim.hpp"
 
 namespace posewright {
@@ -240,6 +241,7 @@ struct Plan {
   std::uint64_t seed = 0;
   std::string problem_file, problem_sha256;
   ParametersFile parameters_file{};
+  KeyEdits changed{};   ///< Problem::changed
   std::string variant;  ///< empty for a plan from bare blocks
   std::string criterion = "o1", method = "exchange", scaling = "tolerance";
   bool determinant = true;       ///< the criterion is log_det, so that its bound is one of log_det

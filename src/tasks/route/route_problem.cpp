@@ -66,6 +66,7 @@ class Router {
         space_(problem, cell_) {
     route_.problem_file = problem.file.string();
     route_.problem_sha256 = problem.sha256;
+    route_.changed = problem.changed;
     route_.parameters_file = parameters_of(problem);
     route_.seed = options.seed;
     route_.closed = options.closed;

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace posewright {
+
+/// A key of a problem file and the value in place of the file's, as text: "measurement.device.noise", "0.05 mm".
+struct KeyEdit {
+  std::string key, value;
+};
+using KeyEdits = std::vector<KeyEdit>;
+
+}  // namespace posewright

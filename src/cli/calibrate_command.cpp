@@ -10,9 +10,12 @@
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/results/calibrated_dh_table.hpp"
 #include "posewright/results/calibration.hpp"
+#include "posewright/results/next.hpp"
+#include "posewright/support/file.hpp"
 #include "posewright/support/json.hpp"
 #include "posewright/tasks/calibrate_problem.hpp"
 #include "posewright/tasks/model_choice.hpp"
+#include "posewright/tasks/next_poses.hpp"
 #include "posewright/tasks/samples_problem.hpp"
 #include "problem_source.hpp"
 #include "result_files.hpp"
@@ -125,6 +128,26 @@ int run_compliances(const CommonOptions& common, const Problem& problem, const C
   return done;
 }
 
+/// The poses to measure after these samples; none, with a note, where they cannot be chosen.
+std::optional<NextPoses> next_of_samples(const CommonOptions& common, const Problem& problem,
+                                         const CalibrateOptions& calibrate) {
+  NextOptions next;
+  next.data = calibrate.data;
+  next.text = read_file(calibrate.data);
+  next.poses = poses_looked_ahead;
+  next.prior = calibrate.prior;
+  next.seed = common.seed;
+  next.threads = common.threads;
+  try {
+    return watched(common, 0, [&](const Monitor& monitor) { return next_poses(problem, next, monitor); }).result;
+  } catch (const CannotDo& why) {
+    print_notes({std::string("no poses are proposed: ") + why.what()});
+  } catch (const InputError& why) {
+    print_notes({std::string("no poses are proposed: ") + why.what()});
+  }
+  return std::nullopt;
+}
+
 int run_calibrate(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
   CalibrateCall calibrate = options_of(values, positional, common);
@@ -158,12 +181,17 @@ int run_calibrate(const po::variables_map& values, const Words& positional) {
   for (const FileToWrite& file : files) write_results({file});
   print_notes(result.notes);
   print_notes(result.refusals);
+  std::optional<NextPoses> next;
+  if (positional.empty() && !was_interrupted) next = next_of_samples(common, problem, calibrate);
   if (!common.json) {
     print_report(calibration_text(result) + (table ? "\n" + dh_table_text(*table) : "") +
+                 (next ? "\n" + proposed_text(*next) : "") +
                  written_text(written ? std::vector{wanted.parameters, wanted.urdf, wanted.deformation}
                                       : std::vector{wanted.deformation}));
   } else {
-    fmt::print("{}", json_text(calibration_json(problem, calibrate, result, table)));
+    auto json = calibration_json(problem, calibrate, result, table);
+    if (next) json["next"] = proposed_json(*next);
+    fmt::print("{}", json_text(json));
   }
   return was_interrupted ? interrupted : written ? done : cannot_do;
 }

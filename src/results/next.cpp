@@ -206,10 +206,19 @@ std::string next_text(const NextPoses& r) {
     text += fmt::format(
         "The limit includes a missing effect: these readings leave errors up to {} by it possible (95 %).\n",
         length(*r.effect_below));
+  return text + proposed_text(r);
+}
+
+std::string proposed_text(const NextPoses& r) {
   const bool stop = r.verdict == NextVerdict::reached || r.verdict == NextVerdict::flat;
-  text += fmt::format("{}, by criterion {} among {}:\n{}", stop ? "To continue anyway" : "Next", r.criterion,
-                      r.candidates, table_of(r.poses));
-  return text;
+  return fmt::format("{}, by criterion {} among {}:\n{}", stop ? "To continue anyway" : "Next", r.criterion,
+                     r.candidates, table_of(r.poses));
+}
+
+Json proposed_json(const NextPoses& r) {
+  Json poses = Json::array();
+  for (const PlannedPose& pose : r.poses) poses.push_back(pose_json(pose));
+  return poses;
 }
 
 Json next_json(const Problem& problem, std::uint64_t seed, const std::string& data, const NextPoses& r,
@@ -244,8 +253,7 @@ Json next_json(const Problem& problem, std::uint64_t seed, const std::string& da
   json["ahead"] = points_json(r.ahead);
   json["with_three_more"] = r.with_three ? point_json(*r.with_three) : Json(nullptr);
   json["history"] = points_json(history);
-  json["poses"] = Json::array();
-  for (const PlannedPose& pose : r.poses) json["poses"].push_back(pose_json(pose));
+  json["poses"] = proposed_json(r);
   json["estimates"] = Json::array();
   for (const EstimatedValue& e : r.estimates)
     json["estimates"].push_back(

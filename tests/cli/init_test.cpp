@@ -372,6 +372,12 @@ TEST(Init, MakesAProblemOfSamplesThatCalibratesPlansAndGoesOn) {
   const std::string short_way = result({"calibrate", "--samples", samples, "--json"});
   EXPECT_EQ(result({"calibrate", "problem.yaml", samples, "--weights", "robust", "--json"}).substr(0, 40),
             short_way.substr(0, 40));
+  const auto proposed = nlohmann::json::parse(short_way)["next"];
+  ASSERT_EQ(proposed.size(), 3U);
+  EXPECT_EQ(proposed[0]["names"],
+            (nlohmann::json{"robot.x", "robot.y", "robot.z", "robot.roll", "robot.pitch", "robot.yaw"}));
+  EXPECT_EQ(proposed,
+            nlohmann::json::parse(result({"next", "problem.yaml", "--data", samples, "-k", "3", "--json"}))["poses"]);
   // make_samples.py says where the camera is.
   const auto frames = nlohmann::json::parse(short_way)["frames"];
   EXPECT_EQ(frames[1]["name"], "tool");

@@ -8,7 +8,7 @@
 #include "posewright/support/error.hpp"
 #include "posewright/support/file.hpp"
 #include "posewright/tasks/observe_problem.hpp"
-#include "src/tasks/init_text.hpp"
+#include "src/tasks/init/init_text.hpp"
 #include "tests/kit/plain_urdf.hpp"
 #include "tests/kit/virtual_file.hpp"
 

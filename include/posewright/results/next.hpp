@@ -80,6 +80,8 @@ inline constexpr double least_gain = 0.02;
 std::string next_text(const NextPoses& result);
 /// Verdict and reason, in a sentence or two.
 std::string next_reason(const NextPoses& result);
+/// The next poses in deg and mm, with criterion and candidates.
+std::string proposed_text(const NextPoses& result);
 /// "reached", …
 std::string verdict_name(NextVerdict verdict);
 
@@ -88,6 +90,9 @@ std::string verdict_name(NextVerdict verdict);
 /// @param history  earlier verdicts with their numbers of poses; empty: none
 nlohmann::ordered_json next_json(const Problem& problem, std::uint64_t seed, const std::string& data,
                                  const NextPoses& result, const std::vector<NextPoint>& history = {});
+
+/// The next poses alone, as in next_json().
+nlohmann::ordered_json proposed_json(const NextPoses& result);
 
 /// One line for each pose, as a plan's pose list.
 std::string next_csv(const NextPoses& result);

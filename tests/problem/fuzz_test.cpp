@@ -45,6 +45,32 @@ void sweep(const std::string& good, std::uint64_t seed) {
   EXPECT_LT(accepted, cases / 2);
 }
 
+TEST(FuzzProblem, MutatedEditsOfKeysParseOrGiveOneLine) {
+  const std::vector<KeyEdit> good = {{"measurement.device.noise", "0.2 mm"},
+                                     {"measurement.targets", "{P1: [0.1, 0.2, 0.3], P2: [0, 0, 0.1]}"},
+                                     {"variants.geometric.parameters.2", "joint_3.*"},
+                                     {"workspace.joints.limits.joint_a1", "[-1, 1]"},
+                                     {"robot", "{urdf: a.urdf, base: b, tip: t}"}};
+  int accepted = 0;
+  const int cases = case_count();
+  for (int i = 0; i < cases; ++i) {
+    Random random(4, std::uint64_t(i));
+    KeyEdit edit = good[std::size_t(random.index(int(good.size())))];
+    if (random.index(2) == 0) edit.key = mutated(edit.key, random);
+    else edit.value = mutated(edit.value, random);
+    try {
+      parse_problem(example::serial, "fuzz.yaml", {}, {edit});
+      ++accepted;
+    } catch (const InputError& error) {
+      ASSERT_TRUE(is_one_line(error.what())) << error.what() << "\ncase " << i;
+    } catch (const std::exception& error) {
+      FAIL() << "case " << i << ": " << error.what() << "\n" << edit.key << "=" << edit.value;
+    }
+  }
+  EXPECT_GT(accepted, cases / 100);
+  EXPECT_LT(accepted, cases / 2);
+}
+
 TEST(FuzzProblem, MutatedSerialFileParsesOrGivesOneLineThatStartsWithTheFile) { sweep(example::serial, 1); }
 TEST(FuzzProblem, MutatedCellFileParsesOrGivesOneLineThatStartsWithTheFile) { sweep(example::cell, 3); }
 TEST(FuzzProblem, MutatedSixPusFileParsesOrGivesOneLineThatStartsWithTheFile) { sweep(example::six_pus, 2); }

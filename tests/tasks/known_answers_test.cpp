@@ -30,7 +30,7 @@ constexpr const char* planar_2r = R"(<robot name="planar">
   <joint name="end" type="fixed"><parent link="lower"/><child link="tip"/><origin xyz="0.8 0 0"/></joint>
 </robot>)";
 
-constexpr const char* planar_problem = R"(posewright: 1
+constexpr const char* planar_arm_problem = R"(posewright: 1
 robot: {urdf: planar.urdf}
 measurement:
   type: position
@@ -46,7 +46,7 @@ design: {criterion: o1, poses: 6, candidates: 6000}
 TEST(KnownAnswers, Planar2RReachesTheAnalyticOptimumAndTheCertificateSaysSo) {
   const TemporaryFolder folder;
   folder.write("planar.urdf", planar_2r);
-  const Problem problem = read_problem(folder.write("p.yaml", planar_problem));
+  const Problem problem = read_problem(folder.write("p.yaml", planar_arm_problem));
   const Plan plan = plan_problem(problem, {}, Monitor{});
   // 2n ln N + 2 Σ ln l_i with n = 2, N = 6, unit noise.
   const double optimum = 4 * std::log(6.0) + 2 * (std::log(1.5) + std::log(0.8));
@@ -66,7 +66,7 @@ TEST(KnownAnswers, Planar2RDeterminantFollowsTheFormulaForAnyPoses) {
   // det M = (N² − |z|²)² (l1 l2)², z = Σ exp(i q2).
   const TemporaryFolder folder;
   folder.write("planar.urdf", planar_2r);
-  const Problem problem = read_problem(folder.write("p.yaml", planar_problem));
+  const Problem problem = read_problem(folder.write("p.yaml", planar_arm_problem));
   Random random(1, 0);
   for (int trial = 0; trial < 20; ++trial) {
     std::vector<std::vector<double>> poses;
@@ -85,7 +85,7 @@ TEST(KnownAnswers, Planar2RTestPoseErrorFollowsTheFormula) {
   // ρ0² = 4σ² (N − Re(z e^{−i q2⁰})) / (N² − |z|²), z = Σ e^{i q2}, whatever the links' lengths.
   const TemporaryFolder folder;
   folder.write("planar.urdf", planar_2r);
-  std::string text = planar_problem;
+  std::string text = planar_arm_problem;
   text.replace(
       text.find("design: {criterion: o1, poses: 6, candidates: 6000}"), 51,
       "design: {poses: 5, candidates: 300, restarts: 2, criterion: test_pose, test_poses: {at: [[0.3, 0.7]], point: "
@@ -229,7 +229,7 @@ TEST(KnownAnswers, TooFewPosesNameTheShortfallAndTheParameters) {
 TEST(KnownAnswers, DependentExplicitVariantIsRefusedWithItsEquation) {
   const TemporaryFolder folder;
   folder.write("planar.urdf", planar_2r);
-  std::string text = planar_problem;
+  std::string text = planar_arm_problem;
   text.replace(text.find("q1.offset"), 9, "base.rz, q1.offset");
   const Problem problem = read_problem(folder.write("p.yaml", text));
   try {

@@ -49,6 +49,18 @@ function(posewright_stage name)
   set_property(GLOBAL APPEND PROPERTY POSEWRIGHT_STAGES ${name})
 endfunction()
 
+# posewright_of_platform(TARGET sources...): sources that depend on what the platform has. Where a folder `wasm` beside them has
+# a file of the name, WebAssembly takes that; where it has none, the file is left out there.
+function(posewright_of_platform target)
+  foreach(source IN LISTS ARGN)
+    if(NOT EMSCRIPTEN)
+      target_sources(${target} PRIVATE ${source})
+    elseif(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/wasm/${source})
+      target_sources(${target} PRIVATE wasm/${source})
+    endif()
+  endforeach()
+endfunction()
+
 # posewright_cold(TARGET): an optimised build compiles it with -O1.
 function(posewright_cold target)
   target_compile_options(${target} PRIVATE $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CONFIG:Release,RelWithDebInfo>>:-O1>)

@@ -1,9 +1,9 @@
-#include <charconv>
 #include <cmath>
 #include <string>
 #include <vector>
 
 #include "block_formats.hpp"
+#include "posewright/support/read_number.hpp"
 #include "posewright/support/trimmed.hpp"
 
 namespace posewright {
@@ -23,8 +23,9 @@ int for_each_cell(std::string_view line, const Body& body) {
 
 bool parse_number(std::string_view cell, double& value) {
   if (cell.starts_with('+')) cell.remove_prefix(1);
-  const auto [end, code] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  return code == std::errc() && end == cell.data() + cell.size() && std::isfinite(value);
+  const std::optional<double> number = read_double(cell);
+  if (number) value = *number;
+  return number && std::isfinite(value);
 }
 
 /// Rows of numbers as one long vector; a first line with a cell that is not a number is the header.

@@ -42,6 +42,9 @@ std::string printable(std::string_view text) {
   return result;
 }
 
+// What no memory holds, and what a std::size_t of 32 bits cannot count.
+constexpr std::uint64_t largest_extent = std::min<std::uint64_t>(std::uint64_t(1) << 40, SIZE_MAX);
+
 std::vector<std::size_t> parse_shape(std::string_view text, const SourcePlace& place) {
   std::vector<std::size_t> shape;
   const auto close = text.find(')');
@@ -54,11 +57,11 @@ std::vector<std::size_t> parse_shape(std::string_view text, const SourcePlace& p
       ++p;
       continue;
     }
-    std::size_t extent = 0;
+    std::uint64_t extent = 0;
     const auto [next, code] = std::from_chars(p, end, extent);
-    if (code != std::errc() || extent > (std::size_t(1) << 40))
+    if (code != std::errc() || extent > largest_extent)
       throw InputError(place, "the .npy header has no readable shape", "n × r × m is needed");
-    shape.push_back(extent);
+    shape.push_back(std::size_t(extent));
     p = next;
   }
   return shape;

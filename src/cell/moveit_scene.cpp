@@ -1,8 +1,8 @@
-#include <charconv>
 #include <cmath>
 
 #include "obstacle_files.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/support/read_number.hpp"
 #include "posewright/support/text.hpp"
 #include "posewright/support/text_file.hpp"
 #include "posewright/support/trimmed.hpp"
@@ -44,11 +44,10 @@ class SceneWords {
 
   double number(const std::string& expected) {
     const std::string text = word(expected);
-    double value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+    const std::optional<double> value = read_double(text);
+    if (!value || !std::isfinite(*value))
       fail("has " + in_quotes(text) + " where " + expected + " is expected", "a number is needed");
-    return value;
+    return *value;
   }
 
   double length(const std::string& expected) {

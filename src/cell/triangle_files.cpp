@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "posewright/support/random.hpp"
+#include "posewright/support/read_number.hpp"
 
 namespace posewright {
 namespace {
@@ -93,7 +94,7 @@ class Words {
     std::string_view word = next();
     if (word.size() > 1 && word.front() == '+') word.remove_prefix(1);
     float value = 0;
-    const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
+    const auto [end, code] = read_number(word.data(), word.data() + word.size(), value);
     // Smaller than a float can be is zero.
     if (code == std::errc::result_out_of_range && word.find("e-") != std::string_view::npos) return 0.0F;
     if (word.empty() || code != std::errc() || end != word.data() + word.size())

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
+#include "posewright/support/read_number.hpp"
 #include "posewright/support/text.hpp"
 
 namespace posewright::yaml {
@@ -42,12 +42,10 @@ std::vector<std::string> Document::texts(const YAML::Node& node, const std::stri
 
 double Document::number(const YAML::Node& node, const std::string& what) const {
   const std::string written = node.IsScalar() ? node.Scalar() : std::string();
-  const char* begin = written.data() + (written.starts_with('+') ? 1 : 0);
-  double value = 0;
-  const auto [end, code] = std::from_chars(begin, written.data() + written.size(), value);
-  if (written.empty() || code != std::errc() || end != written.data() + written.size() || !std::isfinite(value))
+  const std::optional<double> value = read_double(std::string_view(written).substr(written.starts_with('+') ? 1 : 0));
+  if (!value || !std::isfinite(*value))
     fail(node, fmt::format("{}: {} is not a number", what, in_quotes(written)), "a finite number is expected");
-  return value == 0 ? 0.0 : value;
+  return *value == 0 ? 0.0 : *value;
 }
 
 std::vector<double> Document::numbers(const YAML::Node& node, const std::string& what) const {

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <sstream>
 
 #include "posewright/formats/format_text.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/support/read_number.hpp"
 #include "posewright/support/trimmed.hpp"
 
 namespace posewright::formats {
@@ -30,9 +30,9 @@ std::vector<std::string_view> cells_of(std::string_view line, char separator) {
 
 bool parse_number(std::string_view text, double& value) {
   if (text.starts_with('+')) text.remove_prefix(1);
-  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (value == 0) value = 0.0;
-  return !text.empty() && code == std::errc() && end == text.data() + text.size() && std::isfinite(value);
+  const std::optional<double> number = read_double(text);
+  if (number) value = *number == 0 ? 0.0 : *number;
+  return number && std::isfinite(value);
 }
 
 std::vector<NumberRow> read_number_rows(const std::string& bytes, const std::string& file, char separator, bool header,

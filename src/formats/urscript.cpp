@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <locale>
 #include <numbers>
@@ -12,6 +11,7 @@
 #include "posewright/controller/axis_names.hpp"
 #include "posewright/formats/format_text.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/support/read_number.hpp"
 #include "program.hpp"
 
 // Form: UniversalRobots/URScript_Examples; set_payload(mass in kg, [x, y, z] in m from the flange): Universal Robots'
@@ -65,10 +65,9 @@ std::string payload_line(const std::string& payload) {
   std::istringstream cells(payload);
   cells.imbue(std::locale::classic());
   for (std::string cell; std::getline(cells, cell, ',');) {
-    double value = 0;
-    const auto [end, code] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-    if (cell.empty() || code != std::errc() || end != cell.data() + cell.size()) numbers.clear();
-    else numbers.push_back(value);
+    const std::optional<double> value = read_double(cell);
+    if (!value) numbers.clear();
+    else numbers.push_back(*value);
     if (numbers.empty()) break;
   }
   const bool whole = (numbers.size() == 1 || numbers.size() == 4) && payload.back() != ',';

@@ -13,6 +13,7 @@
 #include "posewright/lists/samples.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/file.hpp"
+#include "posewright/support/read_number.hpp"
 #include "robot_columns.hpp"
 
 namespace posewright {
@@ -22,12 +23,11 @@ constexpr std::uintmax_t list_size_limit = 100'000'000;
 
 double temperature_of(const std::string& cell, const Coordinate& c, const SourcePlace& place) {
   constexpr double coldest = -100, hottest = 300;  // degrees Celsius, of a robot that somebody measures
-  double value = 0;
-  const auto [end, code] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  if (code != std::errc() || end != cell.data() + cell.size() || !(value >= coldest && value <= hottest))
+  const std::optional<double> value = read_double(cell);
+  if (!value || !(*value >= coldest && *value <= hottest))
     throw InputError(place, fmt::format("'{}' is not a {}", cell.substr(0, 40), c.name),
                      fmt::format("degrees Celsius, {} to {}", coldest, hottest));
-  return value;
+  return *value;
 }
 
 double of_label(const std::string& label, const Coordinate& c, const SourcePlace& place) {
@@ -171,13 +171,7 @@ class ColumnMap {
 
   static double weight_of(const PoseCell& cell, const SourcePlace& place) {
     const auto* text = std::get_if<std::string>(&cell);
-    double weight = 0;
-    if (text == nullptr) {
-      weight = std::get<double>(cell);
-    } else {
-      const auto [end, code] = std::from_chars(text->data(), text->data() + text->size(), weight);
-      if (code != std::errc() || end != text->data() + text->size()) weight = 0;
-    }
+    const double weight = text == nullptr ? std::get<double>(cell) : read_double(*text).value_or(0);
     if (!(weight > 0) || !std::isfinite(weight))
       throw InputError(place, "weight '" + (text == nullptr ? fmt::format("{}", weight) : text->substr(0, 40)) + "'",
                        "a positive number is expected");

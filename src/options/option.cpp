@@ -7,6 +7,7 @@
 
 #include "posewright/support/error.hpp"
 #include "posewright/support/near_words.hpp"
+#include "posewright/support/read_number.hpp"
 
 namespace posewright {
 namespace {
@@ -16,12 +17,16 @@ namespace {
 }
 
 template <class Number>
-Number parsed_within(const GivenOption& given, Number lower, Number upper, const char* kind) {
-  const char* const end = given.text().data() + given.text().size();
-  Number value{};
-  const auto [last, code] = std::from_chars(given.text().data(), end, value);
-  if (given.text().empty() || code != std::errc() || last != end || !(value >= lower && value <= upper))
+Number within(const GivenOption& given, std::optional<Number> value, Number lower, Number upper, const char* kind) {
+  if (!value || !(*value >= lower && *value <= upper))
     refuse(given, fmt::format("{} from {} to {} is allowed", kind, lower, upper));
+  return *value;
+}
+
+std::optional<long> whole_number(const std::string& text) {
+  long value = 0;
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (code != std::errc() || end != text.data() + text.size()) return std::nullopt;
   return value;
 }
 
@@ -34,11 +39,11 @@ std::string OptionRow::keyword() const {
 }
 
 int whole_of(const GivenOption& given, long lower, long upper) {
-  return int(parsed_within(given, lower, upper, "a whole number"));
+  return int(within(given, whole_number(given.text()), lower, upper, "a whole number"));
 }
 
 double number_of(const GivenOption& given, double lower, double upper) {
-  return parsed_within(given, lower, upper, "a number");
+  return within(given, read_double(given.text()), lower, upper, "a number");
 }
 
 double percent_of(const GivenOption& given) {

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <numbers>
 
 #include "posewright/support/error.hpp"
+#include "posewright/support/read_number.hpp"
 #include "posewright/support/text.hpp"
 
 namespace posewright {
@@ -74,10 +74,10 @@ constexpr std::array<Plausible, 10> plausible{{
 /// Reads the number at the front of `text` and cuts it off.
 double take_number(std::string_view& text, const std::string& allowed) {
   const std::string_view whole = text;
-  // std::from_chars knows no plus sign; "+-1" must stay wrong.
+  // read_number knows no plus sign; "+-1" must stay wrong.
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
   double value = 0.0;
-  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const auto [end, code] = read_number(text.data(), text.data() + text.size(), value);
   if (code == std::errc::result_out_of_range) fail(whole, "is out of range", "a finite double is needed");
   if (code != std::errc() || !std::isfinite(value)) fail(whole, "is not a finite number", allowed);
   text.remove_prefix(static_cast<std::size_t>(end - text.data()));

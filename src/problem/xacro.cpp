@@ -66,7 +66,7 @@ std::string expanded_xacro(const SerialArmSpec& arm, const yaml::Value& urdf) {
   }
   const std::optional<ProgramOutput> output = run_program(words);
   if (!output || output->status == 127)
-    urdf.fail("is a xacro file, and no program xacro is in PATH",
+    urdf.fail("is a xacro file, and no program xacro can be started here",
               "expand it where ROS is, and name the result: " + shown + " > robot.urdf");
   if (output->status != 0)
     urdf.fail(

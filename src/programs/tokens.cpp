@@ -1,7 +1,8 @@
 #include "tokens.hpp"
 
 #include <algorithm>
-#include <charconv>
+
+#include "posewright/support/read_number.hpp"
 
 namespace posewright::programs {
 namespace {
@@ -56,7 +57,7 @@ class Lexer {
   void number() {
     double value = 0;
     const char* first = text_.data() + at_;
-    const auto [stop, code] = std::from_chars(first, text_.data() + text_.size(), value);
+    const auto [stop, code] = read_number(first, text_.data() + text_.size(), value);
     if (code != std::errc() || stop == first) return add(Token::Kind::symbol, at_ + 1);
     add(Token::Kind::number, at_ + std::size_t(stop - first), value);
   }

@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <numeric>
 #include <utility>
+
+#include "posewright/support/read_number.hpp"
 
 namespace posewright {
 namespace {
@@ -29,10 +30,9 @@ std::optional<RobustAim> robust_aim_of(std::string_view text) {
   const std::size_t start = text.find_first_not_of(' ');
   if (start == 0 || start == std::string_view::npos) return std::nullopt;
   text.remove_prefix(start);
-  double share = 0;
-  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), share);
-  if (code != std::errc() || end != text.data() + text.size() || !(share > 0 && share < 1)) return std::nullopt;
-  return RobustAim{RobustAim::Measure::tail, share};
+  const std::optional<double> share = read_double(text);
+  if (!share || !(*share > 0 && *share < 1)) return std::nullopt;
+  return RobustAim{RobustAim::Measure::tail, *share};
 }
 
 Combination::Combination(const RobustAim& aim, std::vector<double> weights, double whole)

@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+
+#include "posewright/support/read_number.hpp"
 
 namespace posewright {
 namespace {
@@ -86,10 +87,9 @@ std::optional<std::vector<double>> numbers_in(std::string_view text) {
     std::string_view word = text.substr(0, text.find_first_of(blanks));
     text.remove_prefix(word.size());
     if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
-    double value = 0;
-    const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (code != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) return std::nullopt;
-    numbers.push_back(value);
+    const std::optional<double> value = read_double(word);
+    if (!value || !std::isfinite(*value)) return std::nullopt;
+    numbers.push_back(*value);
   }
   return numbers;
 }

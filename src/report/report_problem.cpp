@@ -30,12 +30,14 @@ namespace {
 
 // Other numbers of poses, as shares of the plan's own.
 constexpr double shares[] = {0.6, 0.8, 1.25, 1.6, 2.0};
-// Enough for a curve that shows what a few poses more bring. Few poses leave more to a search than many, whose kicks
-// take longer: so many kicks for the plan's own number, of other numbers as many as its square is smaller or larger.
-constexpr int curve_restarts = 1;
-constexpr double curve_kicks = 6;
+// Enough for a curve that shows what a few poses more bring: the plan's own poses, which a long search found, are among
+// those to choose from.
+constexpr int curve_restarts = 1, curve_kicks = 0;
 // Those of the largest gain are as good as all: so many for each pose of the plan.
 constexpr std::size_t promising_per_pose = 10;
+// Candidates that the page shows, and at least for each pose of the plan: a search may need ten times as many, and in a
+// cell they are most of a report's work.
+constexpr int shown_candidates = 1000, shown_per_pose = 5;
 // Of weights that are starts for a search, and of what the page shows of candidates to three digits.
 constexpr double start_tolerance = 1e-2, shown_tolerance = 1e-4;
 // Relative difference of log det that rounding of written configurations cannot make.
@@ -46,6 +48,8 @@ Problem reported_problem(const Problem& problem, const WrittenPlan& plan) {
   Problem searched = as_written(problem, plan);
   set(searched, "design.method", "exchange", "report");
   set(searched, "design.restarts", std::to_string(curve_restarts), "report");
+  const int most = std::max(shown_candidates, shown_per_pose * plan.poses);
+  if (searched.design.candidates.value > most) set(searched, "design.candidates", std::to_string(most), "report");
   return searched;
 }
 
@@ -119,6 +123,7 @@ class ReportBuilder {
       append(all_, list_.configurations[i]);
       if (!list_.measured[i]) append(new_, list_.configurations[i]);
     }
+    fill_pool();
   }
 
   Report make() {
@@ -257,35 +262,51 @@ class ReportBuilder {
     fill_neighbours(report_, study_, drawing, open, options_.threads, monitor_);
   }
 
+  /// The candidates and what the plan has beside them.
+  void fill_pool() {
+    pool_ = study_.configurations;
+    for (std::size_t k = 0; k < new_.count(); ++k) {
+      const auto q = new_[k];
+      std::size_t i = 0;
+      while (i < pool_.count() && !std::equal(q.begin(), q.end(), pool_[i].begin())) ++i;
+      if (i == pool_.count()) append(pool_, q);
+      chosen_.push_back(int(i));
+    }
+    std::sort(chosen_.begin(), chosen_.end());
+    chosen_.erase(std::unique(chosen_.begin(), chosen_.end()), chosen_.end());
+  }
+
   std::vector<SearchPart> parts_of(const Configurations& candidates) const {
     return search_parts(study_, study_.criterion, candidates, options_.threads);
   }
 
-  /// Gain of each candidate, divided by what one must reach to be worth measuring; none if the criterion has no bound.
+  /// Gain of each of the pool, divided by what one must reach to be worth measuring; none if the criterion has no
+  /// bound.
   void find_gains() {
-    const Configurations& pool = study_.configurations;
-    if (double(plan_.poses) > double(pool.count()) * study_.repeats.most) return;
+    if (double(plan_.poses) > double(pool_.count()) * study_.repeats.most) return;
     SearchRequest request = search_request(study_, plan_.poses);
     request.bound_tolerance = shown_tolerance;
-    Bound bound = bound_only(parts_of(pool), request, monitor_);
+    Bound bound = bound_only(parts_of(pool_), request, monitor_);
     if (monitor_.should_stop() || !(bound.price > 0)) return;
     gains_ = std::move(bound.sensitivity);
     for (double& gain : gains_) gain /= bound.price;
   }
 
-  /// Candidates for plans of other numbers of poses.
+  /// Candidates for plans of other numbers of poses: the plan's own and those of the largest gain.
   Configurations promising() const {
-    const Configurations& pool = study_.configurations;
-    const std::size_t count = std::min(pool.count(), promising_per_pose * new_.count());
-    if (gains_.empty() || count == pool.count()) return pool;
-    std::vector<std::size_t> order(pool.count());
+    const std::size_t count = std::min(pool_.count(), promising_per_pose * new_.count());
+    if (gains_.empty() || count == pool_.count()) return pool_;
+    std::vector<std::size_t> order(pool_.count());
     std::iota(order.begin(), order.end(), std::size_t(0));
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return gains_[a] > gains_[b]; });
+    const auto own = std::stable_partition(order.begin(), order.end(), [&](std::size_t i) { return is_chosen(i); });
+    std::stable_sort(own, order.end(), [&](std::size_t a, std::size_t b) { return gains_[a] > gains_[b]; });
     Configurations best;
-    best.dimension = pool.dimension;
-    for (std::size_t k = 0; k < count; ++k) append(best, pool, order[k]);
+    best.dimension = pool_.dimension;
+    for (std::size_t k = 0; k < count; ++k) append(best, pool_[order[k]]);
     return best;
   }
+
+  bool is_chosen(std::size_t i) const { return std::binary_search(chosen_.begin(), chosen_.end(), int(i)); }
 
   void fill_position_errors(const Judgement& judgement) {
     const Variant& variant = study_.first();
@@ -300,19 +321,13 @@ class ReportBuilder {
   }
 
   void fill_candidates() {
-    const Configurations& pool = study_.configurations;
     if (monitor_.should_stop()) report_.notes.emplace_back("Stopped early: the gain of each candidate is left out.");
     if (gains_.empty()) return;
     ReportCandidates candidates;
     candidates.sensitivity = gains_;
-    for (std::size_t i = 0; i < pool.count(); ++i) {
-      candidates.positions.push_back(study_.first().model->tool_pose(pool[i]).translation());
-      for (std::size_t k = 0; k < new_.count(); ++k)
-        if (std::equal(pool[i].begin(), pool[i].end(), new_[k].begin())) {
-          candidates.chosen.push_back(int(i));
-          break;
-        }
-    }
+    candidates.chosen = chosen_;
+    for (std::size_t i = 0; i < pool_.count(); ++i)
+      candidates.positions.push_back(study_.first().model->tool_pose(pool_[i]).translation());
     report_.candidates = std::move(candidates);
   }
 
@@ -323,8 +338,7 @@ class ReportBuilder {
       SearchRequest wanted = search_request(study_, poses);
       if (study_.distance.kept) wanted.spacing = &apart;
       wanted.bound_tolerance = start_tolerance;
-      const double share = double(new_.count()) / poses;
-      wanted.planner.kicks = int(std::lround(curve_kicks * share * share));
+      wanted.planner.kicks = curve_kicks;
       const SearchResult found = search(copied_parts(parts), wanted, monitor_);
       if (monitor_.should_stop()) return std::nullopt;  // not the best plan of so many
       return point_of(chosen_by(found.design, pool), poses);
@@ -374,8 +388,9 @@ class ReportBuilder {
   const Problem problem_;
   const PoseList list_;  // the poses of the plan
   const Study study_;
-  Configurations all_, new_;
-  std::vector<double> gains_;  // of the candidates
+  Configurations all_, new_, pool_;
+  std::vector<int> chosen_;    // of the pool, in the plan; ascending
+  std::vector<double> gains_;  // of the pool
 };
 
 }  // namespace

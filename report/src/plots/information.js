@@ -37,7 +37,7 @@ export function sensitivityPlot(report) {
     id: 'plot-sensitivity',
     title: 'What every candidate would add',
     caption:
-      'All candidates, most telling first, judged at the weights that would be best if poses could be measured in fractions: above the dashed line a candidate is worth measuring in full, on it in part, below it not at all. Orange dots are in the plan; poses found between the candidates have none.',
+      'Candidates drawn for this page and the poses of the plan, most telling first, judged at the weights that would be best if poses could be measured in fractions: above the dashed line a candidate is worth measuring in full, on it in part, below it not at all. Orange dots are in the plan.',
     options: {
       series: [
         { label: 'candidate, in order' },

@@ -128,7 +128,7 @@ std::array<std::size_t, 3> shape_of(const Header& header, std::uintmax_t size, s
                      "n × r × m (3) or (n·r) × m (2) is needed");
   }
   if (n == 0 || r == 0 || m == 0) throw InputError(place, "has no blocks", "n, r and m must be at least 1");
-  const std::size_t available = (size - header.data) / std::size_t(header.item);
+  const std::uintmax_t available = (size - header.data) / std::size_t(header.item);
   if (r > 100000 || m > 100000 || available / r / m < n || available != n * r * m)
     throw InputError(place, "holds " + std::to_string(available) + " numbers",
                      std::to_string(n) + " × " + std::to_string(r) + " × " + std::to_string(m) + " are announced");
@@ -176,7 +176,7 @@ class NpyReader {
     std::string head(12, '\0');
     head.resize(reader_.read(head.data(), head.size()));
     if (!is_npy(head)) throw InputError(place_, "is not a .npy array", "save the array with numpy.save");
-    const std::size_t header_size = std::min<std::size_t>(header_end(head, place_), reader_.size());
+    const std::size_t header_size = std::size_t(std::min<std::uintmax_t>(header_end(head, place_), reader_.size()));
     const std::size_t known = head.size();
     head.resize(std::max(known, header_size));
     head.resize(known + reader_.read(head.data() + known, head.size() - known));

@@ -31,7 +31,7 @@ class Welder {
  private:
   struct Hash {
     std::size_t operator()(const std::array<std::uint32_t, 3>& key) const {
-      return mix_bits(mix_bits(mix_bits(key[0]) ^ key[1]) ^ key[2]);
+      return std::size_t(mix_bits(mix_bits(mix_bits(key[0]) ^ key[1]) ^ key[2]));
     }
   };
 

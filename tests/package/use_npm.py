@@ -1,0 +1,65 @@
+"""The package of npm in an empty folder, from a URDF to a program of the robot and a calibrated file: use_npm.py SOURCE PACKAGE
+[PROGRAM].
+
+PACKAGE is the archive, or a folder that holds it. The second road is the native PROGRAM on the same files: its figures and the
+robot's program are the same."""
+import json
+import math
+import pathlib
+import re
+import shutil
+import sys
+import tempfile
+
+from debian import need, run, skip
+
+need(node="nodejs", npm="npm")
+source, package = map(pathlib.Path, sys.argv[1:3])
+native = sys.argv[3] if len(sys.argv) > 3 else None
+version = re.search(r"project\(posewright VERSION (\S+)", (source / "CMakeLists.txt").read_text()).group(1)
+if package.is_dir() or not package.exists():
+    package /= f"posewright-{version}.tgz"
+if not package.exists():
+    skip(f"there is no {package.name} (scripts/wasm build/wasm-package makes it)")
+
+STEPS = (("init", "kr270.urdf", "--tracker"),
+         ("plan", "problem.yaml", "--candidates", "60", "--poses", "10"),
+         ("route", "plan.json", "--from-home", "--closed"),
+         ("export", "route.json", "--to", "kuka-krl", "-o", "CALPOSES.src"),
+         ("simulate", "problem.yaml", "plan.json", "--draws", "2", "--data", "measured.csv"),
+         ("calibrate", "problem.yaml", "measured.csv", "-o", "calibrated.yaml"))
+TIMES = re.compile(r"\b\d+\.\d+ s\b")
+
+
+def flow(folder, *program):
+    shutil.copy(source / "examples/kr270/kr270.urdf", folder)
+    return [TIMES.sub("", run(*program, *step, cwd=folder)) for step in STEPS]
+
+
+def alike(one, other):
+    """The same words, and numbers within 0.1 %: sin, cos and atan2 of two C libraries differ in their last bits."""
+    one, other = one.split(), other.split()
+    return len(one) == len(other) and all(a == b or near(a, b) for a, b in zip(one, other))
+
+
+def near(a, b):
+    try:
+        return math.isclose(float(a.strip("(),:;")), float(b.strip("(),:;")), rel_tol=1e-3)
+    except ValueError:
+        return False
+
+
+with tempfile.TemporaryDirectory() as empty, tempfile.TemporaryDirectory() as other:
+    here, there = pathlib.Path(empty), pathlib.Path(other)
+    run("npm", "install", "--offline", "--no-audit", "--no-fund", package.resolve(), cwd=here)
+    npx = ("npx", "--offline", "posewright")
+    assert run(*npx, "--version", cwd=here) == f"posewright {version}\n"
+    said = flow(here, *npx)
+    assert "PTP" in (here / "CALPOSES.src").read_text()
+    assert (here / "calibrated.yaml").read_text().startswith("posewright_parameters: 1\n")
+    assert len(json.loads((here / "plan.json").read_text())["poses"]) == 10
+    if native:
+        for step, mine, theirs in list(zip(STEPS, said, flow(there, native)))[:4]:
+            assert alike(mine, theirs), f"{step[0]}: node\n{mine}\nnative\n{theirs}"
+        for name in ("CALPOSES.src", "CALPOSES.dat"):
+            assert alike((here / name).read_text(), (there / name).read_text()), name

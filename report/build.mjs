@@ -1,78 +1,25 @@
 // Builds the page of `posewright report`: one file, dist/report.html, and the licences of what is in it.
 // node build.mjs           writes them
 // node build.mjs --check   fails where dist differs from what the sources give
-import { createHash } from 'node:crypto';
-import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
-import { deflateSync, inflateSync } from 'node:zlib';
+import { mkdirSync, writeFileSync } from 'node:fs';
+import { inflateSync } from 'node:zlib';
+import { filled, hash, here, inline, licences, packed, read, script, style } from './build_parts.mjs';
 
-const build = await import('esbuild').then(
-  (esbuild) => esbuild.build,
-  () => {
-    console.log('Skipped: npm packages are missing (npm ci in report/ installs them).');
-    process.exit(77);
-  },
-);
-
-const here = new URL('.', import.meta.url);
-const read = (path) => readFileSync(new URL(path, here), 'utf8');
 const styles = ['base', 'parts', 'view', 'list', 'results', 'print'];
 const bundled = ['three', 'uplot'];
 const placeholder = '@REPORT_DATA@';
 
-/** An inline element's text must not end it. @param {string} text @param {string} tag */
-function inline(text, tag) {
-  if (new RegExp(`</${tag}`, 'i').test(text)) throw new Error(`the ${tag} contains its own end`);
-  return text;
-}
-
-/** @param {string} text */
-const hash = (text) => `sha256-${createHash('sha256').update(text).digest('base64')}`;
-
-function licences() {
-  return bundled
-    .map((name) => {
-      const { version, license } = JSON.parse(read(`node_modules/${name}/package.json`));
-      return `${name} ${version} (${license})\n\n${read(`node_modules/${name}/LICENSE`).trim()}\n`;
-    })
-    .join('\n\n');
-}
-
-async function script() {
-  const result = await build({
-    entryPoints: [new URL('src/main.js', here).pathname],
-    bundle: true,
-    minify: true,
-    format: 'iife',
-    target: 'es2022',
-    legalComments: 'none',
-    charset: 'ascii',
-    write: false,
-    absWorkingDir: new URL('.', here).pathname,
-  });
-  return result.outputFiles[0].text.trim();
-}
-
-async function style() {
-  const text = [
-    read('node_modules/uplot/dist/uPlot.min.css'),
-    ...styles.map((name) => read(`src/styles/${name}.css`)),
-  ].join('\n');
-  const result = await build({ stdin: { contents: text, loader: 'css' }, minify: true, write: false });
-  return result.outputFiles[0].text.trim();
-}
-
 async function page() {
-  const whole = await script();
+  const whole = await script('src/main.js');
   const parts = {
-    STYLE: inline(await style(), 'style'),
+    STYLE: inline(await style(styles), 'style'),
     LOADER: inline(read('src/loader.js').trim(), 'script'),
-    PACKED: deflateSync(whole, { level: 9 }).toString('base64'),
-    LICENSES: licences().replaceAll('--', '- -'),
+    PACKED: packed(whole),
+    LICENSES: licences(bundled).replaceAll('--', '- -'),
   };
   // The browser runs what it unpacks by its hash alone.
   const hashes = { STYLE_HASH: hash(parts.STYLE), LOADER_HASH: hash(parts.LOADER), SCRIPT_HASH: hash(whole) };
-  const all = { ...parts, ...hashes };
-  const text = read('src/index.html').replace(/@([A-Z_]+)@/g, (word, name) => all[name] ?? word);
+  const text = filled('src/index.html', { ...parts, ...hashes });
   if (text.split(placeholder).length !== 2) throw new Error(`${placeholder} must occur exactly once`);
   return text;
 }
@@ -81,7 +28,7 @@ async function page() {
 const unpacked = (text) =>
   text.replace(/(id="report-script">)([^<]*)/, (_, tag, packed) => tag + inflateSync(Buffer.from(packed, 'base64')));
 
-const files = { 'dist/report.html': await page(), 'dist/LICENSES.txt': licences() };
+const files = { 'dist/report.html': await page(), 'dist/LICENSES.txt': licences(bundled) };
 if (process.argv.includes('--check')) {
   const stale = Object.keys(files).filter((path) => unpacked(read(path)) !== unpacked(files[path]));
   if (stale.length > 0) {

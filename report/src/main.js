@@ -7,6 +7,7 @@ import { calibrationsPage } from './pages/calibrations.js';
 import { comparisonPage } from './pages/comparison.js';
 import { nextPage } from './pages/next.js';
 import { planPage } from './pages/plan.js';
+import { problemPage } from './pages/problem.js';
 import { simulationPage } from './pages/simulation.js';
 import { stationsPage } from './pages/stations.js';
 import { twoPlansPage } from './pages/two_plans.js';
@@ -24,6 +25,7 @@ const results = {
 /** @type {Object<string, (report: any) => import('./page.js').Page>} */
 const pages = {
   'posewright/report/1': planPage,
+  'posewright/report-of-problem/1': problemPage,
   'posewright/report-of-result/1': (report) => pageOf(results, report.result.schema)(report.result, report),
   'posewright/report-of-two-plans/1': twoPlansPage,
 };

@@ -8,6 +8,7 @@
 
 #include "command.hpp"
 #include "posewright/options/tables.hpp"
+#include "posewright/report/draw_problem.hpp"
 #include "posewright/report/report_problem.hpp"
 #include "posewright/report/report_result.hpp"
 #include "problem_source.hpp"
@@ -69,6 +70,22 @@ void refuse_options(const po::variables_map& values, std::initializer_list<const
   for (const char* name : names)
     if (values.count(name) > 0)
       throw InputError({}, std::string("--") + name + " does not go with " + shown, "it goes with one PLAN");
+}
+
+int report_cell(const po::variables_map& values, const CommonOptions& common, const std::filesystem::path& page,
+                const std::filesystem::path& file) {
+  refuse_options(values, {"route", "problem", "watch"}, "a problem file");
+  const Problem problem = given_problem(file, values);
+  check_output_files(values, {page}, files_of(problem));
+  DrawOptions options;
+  options.ways = values.count("brief") == 0;
+  options.seed = common.seed;
+  options.threads = common.threads;
+  const auto [report, was_interrupted] = watched(
+      common, time_limit(values), [&](const Monitor& monitor) { return draw_problem(problem, options, monitor); });
+  if (was_interrupted) return interrupted;
+  hand_out(report, common, page, report.faults);
+  return done;
 }
 
 int report_plans(const po::variables_map& values, const CommonOptions& common, const std::filesystem::path& page,
@@ -144,7 +161,8 @@ int run_report(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
   const std::filesystem::path page = output_file(values, "output", "report.html");
   if (positional.size() == 2) return report_plans(values, common, page, positional);
-  const std::filesystem::path file = single(positional, "PLAN or RESULT");
+  const std::filesystem::path file = single(positional, "PLAN, RESULT or PROBLEM");
+  if (is_problem(file)) return report_cell(values, common, page, file);
   const bool watch = values.count("watch") > 0;
   if (is_plan(file)) {
     if (watch) throw InputError({}, "--watch does not go with a plan", "it goes with one RESULT");
@@ -163,13 +181,14 @@ int run_report(const po::variables_map& values, const Words& positional) {
 }  // namespace
 
 Command report_command() {
-  return {
-      "report",
-      "RESULT [PLAN]",
-      "Writes an HTML page of a plan, of two plans, or of a result of calibrate, compare, next, simulate, stations.",
-      report_command_options,
-      "posewright report plan.json --route route.json -o report.html",
-      run_report};
+  return {"report",
+          "RESULT [PLAN]",
+          "Writes an HTML page of a plan, of two plans, of a problem before its plan, or of a result of calibrate, "
+          "compare, "
+          "next, simulate, stations.",
+          report_command_options,
+          "posewright report plan.json --route route.json -o report.html",
+          run_report};
 }
 
 }  // namespace posewright::cli

@@ -254,7 +254,9 @@ const OptionTable<ReportOptions>& report_options() {
     t.text("route", "FILE", "route of the plan; the page shows its order and motions (none)", &R::route,
            OptionKind::file);
     t.of_program("problem", "FILE", "problem file (the one named by the plan)");
-    t.row({"brief", "", "leave out the slow parts: other numbers of poses, gain of candidates, moved poses",
+    t.row({"brief", "",
+           "leave out the slow parts: other numbers of poses, gain of candidates, moved poses; of a problem: ways from "
+           "home",
            OptionKind::flag},
           [](R& o, const GivenOption&) { o.sizes = o.candidates = o.moves = false; });
     t.of_program("watch", "", "result: rewrite the page whenever the file changes; the open page reloads");

@@ -45,5 +45,6 @@ std::string page_with(const std::string& json) {
 std::string report_html(const Report& report) { return page_with(report_json(report)); }
 std::string report_html(const ResultReport& report) { return page_with(report_json(report)); }
 std::string report_html(const TwoPlansReport& report) { return page_with(report_json(report)); }
+std::string report_html(const ProblemReport& report) { return page_with(report_json(report)); }
 
 }  // namespace posewright

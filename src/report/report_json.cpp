@@ -210,30 +210,35 @@ Json bodies_json(const Report& report) {
   return json;
 }
 
+/// What is drawn, whatever the page tells of it.
+void add_scene(Json& json, const Report& report) {
+  json["frames"] = report.frames;
+  json["bodies"] = bodies_json(report);
+  json["stations"] = Json::array();
+  for (const auto& [name, X] : report.stations)
+    json["stations"].push_back({{"name", name}, {"placement", placement_json(X)}});
+  json["targets"] = report.targets;
+  json["keyframes"] = Json::array();
+  for (const ReportKeyframe& keyframe : report.keyframes) json["keyframes"].push_back(keyframe_json(keyframe));
+  json["chain"] = report.chain ? chain_json(*report.chain) : Json(nullptr);
+  json["camera"] = report.camera ? camera_json(*report.camera) : Json(nullptr);
+}
+
 Json plan_report(const Report& report) {
   Json json = {{"schema", "posewright/report/1"},
                {"version", version},
                {"title", report.title},
                {"notes", report.notes},
                {"plan", parse_ordered_json(report.plan_json)},
-               {"route", report.route_json.empty() ? Json(nullptr) : parse_ordered_json(report.route_json)},
-               {"frames", report.frames},
-               {"bodies", bodies_json(report)}};
-  json["stations"] = Json::array();
-  for (const auto& [name, X] : report.stations)
-    json["stations"].push_back({{"name", name}, {"placement", placement_json(X)}});
-  json["targets"] = report.targets;
+               {"route", report.route_json.empty() ? Json(nullptr) : parse_ordered_json(report.route_json)}};
+  add_scene(json, report);
   json["actuator_units"] = Json::object();
   for (const auto& [name, unit] : report.actuators) json["actuator_units"][name] = unit;
-  json["keyframes"] = Json::array();
-  for (const ReportKeyframe& keyframe : report.keyframes) json["keyframes"].push_back(keyframe_json(keyframe));
   json["columns"] = columns_json(report.information);
   json["information"] = information_json(report.information);
   json["singular_values"] = Json::array();
   for (const double s : report.information.singular_values) json["singular_values"].push_back(s);
   json["candidates"] = report.candidates ? candidates_json(*report.candidates) : Json(nullptr);
-  json["chain"] = report.chain ? chain_json(*report.chain) : Json(nullptr);
-  json["camera"] = report.camera ? camera_json(*report.camera) : Json(nullptr);
   json["neighbours"] = report.neighbours ? neighbours_json(*report.neighbours) : Json(nullptr);
   if (!report.neighbours) json["why_no_neighbours"] = report.why_no_neighbours;
   json["position_errors"] = report.position_errors;
@@ -255,6 +260,21 @@ std::string report_json(const ResultReport& report) {
                {"file", report.file},
                {"refresh", report.refresh},
                {"result", parse_ordered_json(report.result_json)}};
+  return json_text(json, JsonLayout::one_line) + "\n";
+}
+
+std::string report_json(const ProblemReport& report) {
+  Json json = {{"schema", "posewright/report-of-problem/1"},
+               {"version", version},
+               {"title", report.scene.title},
+               {"problem", {{"file", report.file}, {"sha256", report.sha256}}},
+               {"seed", report.seed},
+               {"notes", report.scene.notes},
+               {"faults", report.faults},
+               {"reasons", report.reasons},
+               {"verdicts", report.verdicts},
+               {"evenly", report.evenly}};
+  add_scene(json, report.scene);
   return json_text(json, JsonLayout::one_line) + "\n";
 }
 

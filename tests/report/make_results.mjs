@@ -24,6 +24,16 @@ function withPlaces(folder) {
   return file;
 }
 
+/** A cell whose tracker stands in the pillar. @param {string} folder */
+function brokenCell(folder) {
+  const text = readFileSync(join(root, 'examples/cell/problem.yaml'), 'utf8')
+    .replace('../kr270/kr270.urdf', join(root, 'examples/kr270/kr270.urdf'))
+    .replace('A: [3.6, -1.4, 0.5]', 'A: [-0.6, -1.7, 0.5]');
+  const file = join(folder, 'broken.yaml');
+  writeFileSync(file, text);
+  return file;
+}
+
 /** @param {string} program @param {string} out folder @returns {ResultCase[]} */
 export function makeResults(program, out) {
   const run = (...words) => execFileSync(resolve(program), words, { cwd: folder, encoding: 'utf8', maxBuffer: 1e9 });
@@ -46,7 +56,11 @@ export function makeResults(program, out) {
     name,
     words: [`${name}.json`],
   }));
-  return [...made, { name: 'two_plans', words: ['a.json', 'b.json'] }].map(({ name, words }) => {
+  const others = [
+    { name: 'two_plans', words: ['a.json', 'b.json'] },
+    { name: 'problem', words: [brokenCell(folder)] },
+  ];
+  return [...made, ...others].map(({ name, words }) => {
     const page = join(folder, `${name}.html`);
     const data = JSON.parse(run('report', ...words, '-o', page, '--force', '--quiet', '--json'));
     return { name, page, data, files: { folder } };

@@ -174,3 +174,21 @@ export async function checkTwoPlans(page, { data, files }) {
   ]);
   check(data.plans.length === 2 && data.files.join() === 'a.json,b.json', 'the page holds both plans');
 }
+
+/** What is wrong is said, shares are those of the verdicts, and the slider shows each reason. */
+export async function checkProblem(page, { data }) {
+  check(data.faults.length > 0 && /station A stands inside pillar/.test(data.faults[0]), 'the fault is in the data', data.faults);
+  check((await page.locator('#faults').innerText()).includes(data.faults[0]), 'and on the page');
+  const reason = (k) => (data.verdicts[k] < 0 ? 'can be measured' : data.reasons[data.verdicts[k]]);
+  const even = Array.from({ length: data.evenly }, (_, k) => reason(k + 1));
+  for (const text of await page.locator('.verdicts li').allTextContents()) {
+    const [, share, what] = text.match(/^(\d+) % (.*)$/);
+    const expected = (100 * even.filter((r) => r === what).length) / data.evenly;
+    check(Math.abs(Number(share) - expected) <= 0.5, `share of "${what}"`, share);
+  }
+  const slider = page.getByRole('slider', { name: 'Configuration shown' });
+  for (const k of [0, 1, data.verdicts.length - 1]) {
+    await slider.fill(String(k));
+    check((await page.locator('.stop').innerText()).endsWith(reason(k)), `the reason of configuration ${k} is shown`);
+  }
+}

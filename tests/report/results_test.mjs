@@ -29,6 +29,7 @@ const own = {
   stations: checks.checkStations,
   next: checks.checkNext,
   two_plans: checks.checkTwoPlans,
+  problem: checks.checkProblem,
 };
 
 /** No page is wider than its window, in light or dark. @param {any} browser @param {import('./make_results.mjs').ResultCase} c */

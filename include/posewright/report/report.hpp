@@ -146,6 +146,17 @@ struct ResultReport {
   double refresh = 0.0;     ///< s after which the page reads itself again; 0: never
 };
 
+/// A problem before any plan.
+struct ProblemReport {
+  std::string file, sha256;
+  std::uint64_t seed = 0;
+  Report scene;  ///< drawn parts alone; keyframes: home (pose 0), then what was looked at (1, 2, …)
+  std::vector<std::string> faults;   ///< messages of checks that cannot be made, `file:line: …`
+  std::vector<std::string> reasons;  ///< that forbid configurations
+  std::vector<int> verdicts;         ///< one a keyframe: index into reasons; −1: feasible
+  int evenly = 0;                    ///< keyframes 1 to this were drawn evenly, those behind are feasible
+};
+
 /// Two plans beside each other.
 struct TwoPlansReport {
   std::string title;
@@ -153,13 +164,16 @@ struct TwoPlansReport {
   std::array<Report, 2> plans;
 };
 
-/// Schemas posewright/report/1, posewright/report-of-result/1, posewright/report-of-two-plans/1 (docs/report.md).
+/// Schemas posewright/report/1, posewright/report-of-result/1, posewright/report-of-problem/1,
+/// posewright/report-of-two-plans/1 (docs/report.md).
 std::string report_json(const Report& report);
 std::string report_json(const ResultReport& report);
 std::string report_json(const TwoPlansReport& report);
+std::string report_json(const ProblemReport& report);
 /// The page: one file, no network.
 std::string report_html(const Report& report);
 std::string report_html(const ResultReport& report);
 std::string report_html(const TwoPlansReport& report);
+std::string report_html(const ProblemReport& report);
 
 }  // namespace posewright

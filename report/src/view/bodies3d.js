@@ -76,7 +76,7 @@ export class Bodies {
     );
     mesh.add(edges);
     this.groups[body.frame].add(mesh);
-    return { body, material, line: edges.material };
+    return { body, mesh, material, line: edges.material };
   }
 
   /** An endless plane is drawn about the middle of the scene. */

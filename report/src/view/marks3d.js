@@ -45,7 +45,7 @@ export class Tips {
     const { tips, dot } = this.picture;
     tips.forEach((tip, k) => {
       this.mesh.setMatrixAt(k, matrix.makeScale(dot, dot, dot).setPosition(new Vector3(...tip.position)));
-      this.mesh.setColorAt(k, on.has(tip.id) ? measured : off);
+      this.mesh.setColorAt(k, tip.colour ? new Color(colour(tip.colour)) : on.has(tip.id) ? measured : off);
     });
     this.mesh.instanceMatrix.needsUpdate = true;
     if (this.mesh.instanceColor) this.mesh.instanceColor.needsUpdate = true;
@@ -172,12 +172,12 @@ export class Sights {
     this.targetMaterial = new MeshStandardMaterial({ roughness: 0.3 });
     this.targets = report.targets.map(() => new Mesh(new SphereGeometry(radius, 16, 12), this.targetMaterial));
     this.stationMaterial = new MeshStandardMaterial({ roughness: 0.6 });
-    const stations = report.stations.map((station) => {
+    this.stations = report.stations.map((station) => {
       const cone = new Mesh(new ConeGeometry(radius * 1.8, radius * 4, 24).rotateX(Math.PI / 2), this.stationMaterial);
       cone.position.set(...station.placement.slice(0, 3));
       return cone;
     });
-    this.root.add(this.lines, ...this.targets, ...stations);
+    this.root.add(this.lines, ...this.targets, ...this.stations);
     this.seen = new LineBasicMaterial();
     this.hidden = new LineDashedMaterial({ dashSize: radius * 3, gapSize: radius * 2 });
     this.paint();

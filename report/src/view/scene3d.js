@@ -150,6 +150,22 @@ export class Scene3d {
     this.draw();
   }
 
+  /** Looks from where another scene was looked at. @param {Scene3d} other */
+  lookLike(other) {
+    this.turned = other.turned;
+    this.looking = other.looking;
+    this.camera.position.copy(other.camera.position);
+    this.controls.target.copy(other.controls.target);
+    this.controls.update();
+  }
+
+  dispose() {
+    this.controls.dispose();
+    this.renderer.dispose();
+    this.renderer.forceContextLoss();
+    this.canvas.remove();
+  }
+
   request() {
     this.waiting ??= requestAnimationFrame(() => this.draw());
   }

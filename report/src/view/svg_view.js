@@ -73,6 +73,15 @@ export class SvgView {
 
   paint() {}
 
+  /** @param {SvgView} other */
+  lookLike({ azimuth, elevation, centre, span }) {
+    Object.assign(this, { azimuth, elevation, centre, span });
+  }
+
+  dispose() {
+    this.canvas.remove();
+  }
+
   /** @param {number} width @param {number} height */
   resize(width, height) {
     [this.width, this.height] = [width, height];

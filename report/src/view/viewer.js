@@ -20,7 +20,7 @@ function hasWebGl() {
 }
 
 /** @param {HTMLElement} holder @param {Picture} picture @param {(id: number) => void} pick */
-function makeView(holder, picture, pick) {
+export function makeView(holder, picture, pick) {
   const solid = hasWebGl();
   const view = solid ? new Scene3d(holder, picture, pick) : new SvgView(holder, picture, pick);
   const use = 'Drag or arrow keys turn the picture; plus, minus and, after a click, the wheel zoom.';
@@ -28,10 +28,9 @@ function makeView(holder, picture, pick) {
   view.canvas.setAttribute('aria-label', `Robot and its surroundings at the pose shown. ${use}`);
   holder.title = use;
   if (solid) printed(view, holder);
-  new ResizeObserver(() => holder.clientWidth > 0 && view.resize(holder.clientWidth, holder.clientHeight)).observe(
-    holder,
-  );
-  return { view, solid };
+  const sizes = new ResizeObserver(() => holder.clientWidth > 0 && view.resize(holder.clientWidth, holder.clientHeight));
+  sizes.observe(holder);
+  return { view, solid, sizes };
 }
 
 /**

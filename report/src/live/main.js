@@ -1,0 +1,100 @@
+import { h } from '../dom.js';
+import { watchTheme } from '../theme.js';
+import { editor } from './editor.js';
+import { liveView } from './live_view.js';
+import { messagesOf } from './messages.js';
+import { Program } from './program.js';
+import { Project, joined, nameOf } from './project.js';
+import { resultFrame } from './result_frame.js';
+import { cellStep } from './steps/cell.js';
+import { instrumentStep } from './steps/instrument.js';
+import { measuredStep } from './steps/measured.js';
+import { planStep } from './steps/plan.js';
+import { robotStep } from './steps/robot.js';
+import { takeStep } from './steps/take.js';
+import { stepTabs } from './step_tabs.js';
+import { documentOf } from './yaml_edit.js';
+
+/**
+ * What the parts of the page share.
+ * @typedef {object} Live
+ * @property {Project} project
+ * @property {Program} look draws and looks quickly; a newer question ends an older one
+ * @property {Program} work what a user has asked for
+ * @property {ReturnType<typeof editor>} editor
+ * @property {ReturnType<typeof resultFrame>} result
+ * @property {(text: string) => void} complain
+ * @property {(files: Map<string, Uint8Array>) => Promise<void>} begin writes a problem for the robot
+ * @property {string} [robot] path
+ * @property {() => string[]} [instrumentWords] options of init
+ * @property {boolean} [planning]
+ * @property {() => void} quickLook the error to expect, roughly
+ * @property {{text: string, bytes: Uint8Array}} [quick] its plan, and the problem it is for
+ */
+
+const said = h('p', { class: 'complaint', role: 'alert', hidden: true });
+
+/** @type {any} */
+const live = {
+  project: new Project(),
+  look: new Program(),
+  work: new Program(),
+  result: resultFrame(),
+  complain(text) {
+    said.textContent = text;
+    said.hidden = text === '';
+  },
+  async begin(files) {
+    live.complain('');
+    live.robot ??= robotOf(live.project);
+    if (!live.robot) return live.complain('There is no robot yet: drop a URDF or choose an example.');
+    const args = ['init', live.robot, ...live.instrumentWords(), '--yes', '-o', 'problem.yaml', '--force'];
+    const { code, err, files: written } = await live.work.run({ args, files });
+    const messages = messagesOf(err, live.robot);
+    if (code !== 0 || !written.has('problem.yaml')) {
+      live.complain(messages.map((m) => (m.line > 0 ? `${nameOf(live.robot)}, line ${m.line}: ${m.text}` : m.text)).join(' '));
+      return;
+    }
+    if (live.project.problem === 'problem.yaml' && robotOf(live.project) === live.robot) {
+      live.project.add([...files, ...[...written].filter(([path]) => path !== 'problem.yaml')]);
+      live.project.write(new TextDecoder().decode(written.get('problem.yaml')));
+    } else live.project.open(new Map([...files, ...written]), 'problem.yaml');
+    live.complain(messages.map((m) => m.text).join(' '));
+  },
+};
+
+/** The URDF of a problem. @param {Project} project */
+function robotOf(project) {
+  const urdf = documentOf(project.text)?.getIn(['robot', 'urdf']);
+  return typeof urdf === 'string' ? joined(project.folder, urdf) : undefined;
+}
+
+function build() {
+  const examples = JSON.parse(document.getElementById('examples').textContent);
+  live.editor = editor(live.project);
+  const view = liveView(live, live.editor);
+  const steps = stepTabs([
+    ['Robot', robotStep(live, examples)],
+    ['Instrument', instrumentStep(live)],
+    ['Cell', cellStep(live)],
+    ['Plan', planStep(live)],
+    ['Take away', takeStep(live)],
+    ['Measured data', measuredStep(live)],
+  ], () => live.quickLook());
+  document.getElementById('page').append(
+    steps.tabs,
+    said,
+    h('div', { class: 'live' }, h('section', { class: 'picture-part', 'aria-label': 'Cell' }, view.element), h('div', { class: 'work-part' }, steps.panels, live.editor.element)),
+    live.result.element,
+  );
+}
+
+watchTheme();
+build();
+addEventListener('beforeunload', (event) => live.planning && event.preventDefault());
+for (const name of ['dragover', 'drop']) addEventListener(name, (event) => event.preventDefault());
+const given = document.getElementById('given').textContent;
+if (given.startsWith('{')) {
+  const { files, problem } = JSON.parse(given);
+  live.project.open(new Map(Object.entries(files).map(([path, text]) => [path, Uint8Array.from(atob(text), (c) => c.charCodeAt(0))])), problem);
+} else live.project.restore();

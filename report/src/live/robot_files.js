@@ -1,0 +1,48 @@
+import { folderOf, joined, nameOf } from './project.js';
+
+const decoder = new TextDecoder();
+const isRobot = (path, bytes) => /\.(urdf|xml|xacro)$/i.test(path) && /<robot[\s>]/.test(decoder.decode(bytes.subarray(0, 20000)));
+
+/** The robot among dropped files; undefined: none. @param {Map<string, Uint8Array>} files */
+export function robotAmong(files) {
+  const robots = [...files].filter(([path, bytes]) => isRobot(path, bytes)).map(([path]) => path);
+  return robots.find((path) => /\.urdf$/i.test(path)) ?? robots[0];
+}
+
+/** How many names from the end two paths share. @param {string} a @param {string} b */
+function commonEnd(a, b) {
+  const [x, y] = [a, b].map((path) => path.split('/').reverse());
+  let k = 0;
+  while (k < x.length && k < y.length && x[k] === y[k]) k++;
+  return k;
+}
+
+/**
+ * Where the program looks for a mesh of a URDF, relative to the page's root.
+ * @param {string} name as the URDF has it @param {string} robot path of the URDF
+ */
+function placeOf(name, robot) {
+  const named = name.match(/^(?:package|model):\/\/(.+)$/);
+  if (named) return named[1];
+  return name.startsWith('/') || /^\w+:/.test(name) ? undefined : joined(folderOf(robot), name);
+}
+
+/**
+ * Puts loose meshes where the URDF names them, by the end of their path, and lists those that are not there.
+ * @param {Map<string, Uint8Array>} files changed @param {string} robot @returns {string[]} names of missing meshes
+ */
+export function placeMeshes(files, robot) {
+  const text = decoder.decode(files.get(robot));
+  const names = new Set([...text.matchAll(/<mesh\b[^>]*\bfilename\s*=\s*["']([^"']+)["']/g)].map((m) => m[1]));
+  const missing = [];
+  for (const name of names) {
+    const place = placeOf(name, robot) ?? nameOf(name);
+    if (files.has(place)) continue;
+    const best = [...files.keys()]
+      .map((path) => ({ path, ends: commonEnd(path, place) }))
+      .reduce((a, b) => (b.ends > a.ends ? b : a), { path: '', ends: 0 });
+    if (best.ends > 0) files.set(place, files.get(best.path));
+    else missing.push(name);
+  }
+  return missing;
+}

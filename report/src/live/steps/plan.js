@@ -1,0 +1,101 @@
+import { h } from '../../dom.js';
+import { usualError } from '../../numerics/expected_error.js';
+import { quantity } from '../../text/units.js';
+import { joined, nameOf } from '../project.js';
+import { taskLine } from '../task.js';
+import { documentOf, withValue } from '../yaml_edit.js';
+
+/** A look that takes a few seconds: enough to show what more poses would bring. */
+const quickly = ['--candidates', '300', '--restarts', '1', '--proof-time', '0'];
+
+/** @param {any} plan plan.json */
+function errorText(plan) {
+  const error = plan.expected_error;
+  if (!error) return `${plan.poses.length} poses`;
+  return `${quantity(usualError(error), 'm', 3)} with ${plan.poses.length} poses; ${quantity(error.by_noise, 'm', 3)} from noise alone`;
+}
+
+/** A slider with its value beside it. */
+function slider(label, unit, attributes, oninput, onchange) {
+  const shown = h('output', {});
+  const input = h('input', { type: 'range', 'aria-label': label, ...attributes, oninput: () => (tell(), oninput?.()), onchange });
+  const tell = () => (shown.textContent = `${input.value}${unit}`);
+  tell();
+  return { input, tell, element: h('label', {}, h('span', {}, label), input, shown) };
+}
+
+/** @param {import('../main.js').Live} live */
+export function planStep(live) {
+  const { project } = live;
+  const poses = slider('Number of poses', '', { min: 3, max: 100, value: 30 }, undefined, () => project.write(withValue(project.text, ['design', 'poses'], poses.input.valueAsNumber)));
+  const time = slider('Time at most', ' s', { min: 5, max: 600, step: 5, value: 60 });
+  const expected = h('output', { class: 'expected' }, '–');
+  const note = h('p', { class: 'note' });
+  const task = taskLine(live);
+  const go = h('button', { class: 'main' }, 'Plan');
+  const inFolder = (name) => joined(project.folder, name);
+
+  project.addEventListener('text', () => {
+    const written = documentOf(project.text)?.getIn(['design', 'poses']);
+    if (Number.isInteger(written)) poses.input.value = String(written);
+    poses.tell();
+    expected.textContent = '–';
+    note.textContent = '';
+  });
+
+  /** After every change that the program could draw. */
+  live.quickLook = async () => {
+    if (go.disabled || element.closest('[hidden]')) return;
+    note.textContent = 'A quick look at the error to expect…';
+    const { text } = project;
+    const args = ['plan', nameOf(project.problem), ...quickly, '-o', 'quick.json', '--poses-csv', '-', '--force', '--quiet'];
+    const { code, files, err } = await live.look.run({ args, files: project.files, folder: project.folder });
+    if (project.text !== text || code === 130) return;
+    const bytes = files.get(inFolder('quick.json'));
+    note.textContent = bytes ? 'From a quick look; Plan searches on.' : (err.at(-1) ?? '');
+    if (!bytes) return;
+    live.quick = { text, bytes };
+    expected.textContent = errorText(JSON.parse(new TextDecoder().decode(bytes)));
+  };
+
+  const showReport = async () => {
+    const done = await task.run(['report', 'plan.json', '--brief', '-o', 'report.html', '--force', '--quiet'], 'The report');
+    const page = project.read(inFolder('report.html'));
+    if (done.code === 0 && page) live.result.show('Plan', page);
+  };
+
+  /** The plan of the quick look takes the place of one that was stopped. */
+  const keepQuick = () => {
+    if (live.quick?.text !== project.text) return false;
+    project.add([[inFolder('plan.json'), live.quick.bytes]]);
+    return true;
+  };
+
+  go.addEventListener('click', async () => {
+    if (project.text === '') return live.complain('There is no problem yet: choose a robot first.');
+    go.disabled = true;
+    live.look.stop();
+    note.textContent = '';
+    const args = ['plan', nameOf(project.problem), '--time-limit', time.input.value, '-o', 'plan.json', '--poses-csv', 'poses.csv', '--force', '--verbose'];
+    const { code } = await task.run(args, 'Planning');
+    const stopped = code === 130 && !project.files.has(inFolder('plan.json'));
+    if (code === 0 || (code === 130 && (keepQuick() || !stopped))) {
+      expected.textContent = errorText(JSON.parse(project.read(inFolder('plan.json'))));
+      await showReport();
+      if (code === 130) task.say('Stopped: this is the plan of the quick look. The slider of time ends a search with its best plan so far.');
+      live.planned?.();
+    } else if (code === 130) task.say('Stopped before there was a plan. The slider of time ends a search with its best plan so far.');
+    go.disabled = false;
+  });
+
+  const element = h(
+    'div',
+    {},
+    h('div', { class: 'sliders' }, poses.element, time.element),
+    h('p', { class: 'expected-line' }, 'Error to expect after calibration: ', expected),
+    note,
+    go,
+    task.element,
+  );
+  return element;
+}

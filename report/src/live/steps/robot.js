@@ -1,0 +1,51 @@
+import { h } from '../../dom.js';
+import { dropZone } from '../dropped.js';
+import { nameOf } from '../project.js';
+import { placeMeshes, robotAmong } from '../robot_files.js';
+
+/**
+ * @param {import('../main.js').Live} live
+ * @param {{title: string, files: Record<string, string>, problem: string}[]} examples
+ */
+export function robotStep(live, examples) {
+  const say = h('p', { class: 'note', role: 'status' });
+  const take = async (files) => {
+    const problem = [...files.keys()].find((path) => /(^|\/)problem\.ya?ml$/.test(path));
+    const all = new Map([...live.project.files, ...files]);
+    const robot = robotAmong(files) ?? (live.robot && all.has(live.robot) ? live.robot : undefined);
+    if (problem) return live.project.open(all, problem);
+    if (!robot) return live.complain('Among these files is no robot: a URDF (or the output of xacro) has <robot> at its beginning.');
+    const missing = placeMeshes(all, robot);
+    live.robot = robot;
+    say.textContent =
+      missing.length > 0
+        ? `${robot}: ${missing.length} of its meshes are missing (${missing.slice(0, 3).map(nameOf).join(', ')}${missing.length > 3 ? ', …' : ''}); drop them or their folder here. The notes tell what is left out without them.`
+        : `${robot} is read.`;
+    await live.begin(all);
+  };
+  const example = h(
+    'select',
+    {
+      'aria-label': 'Example',
+      onchange: () => {
+        const chosen = examples[example.selectedIndex - 1];
+        if (!chosen) return;
+        const encoder = new TextEncoder();
+        const files = new Map(Object.entries(chosen.files).map(([path, text]) => [path, encoder.encode(text)]));
+        say.textContent = '';
+        if (chosen.problem) return live.project.open(files, chosen.problem);
+        return take(files);
+      },
+    },
+    h('option', {}, 'Choose an example…'),
+    examples.map((e) => h('option', {}, e.title)),
+  );
+  return h(
+    'div',
+    {},
+    dropZone({ label: 'Choose files', hint: 'Drop a URDF with its meshes, a folder with both, or a problem file.', take, complain: live.complain, folder: true }),
+    h('p', {}, 'or ', example),
+    say,
+    h('p', { class: 'note' }, 'Nothing leaves this page: the program runs inside it, without network.'),
+  );
+}

@@ -1,0 +1,100 @@
+// A problem before its plan: what is drawn, what is wrong with it in space, and the verdicts of its configurations.
+
+#include "posewright/report/draw_problem.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "tests/kit/example_problems.hpp"
+#include "tests/kit/temporary_folder.hpp"
+
+namespace posewright {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+/// A KR 270 at a tracker, with this block in its file.
+ProblemReport drawn_problem(const std::string& workspace, bool ways = true) {
+  const TemporaryFolder folder;
+  const std::string urdf = (examples_folder() / "kr270/kr270.urdf").string();
+  const auto file =
+      folder.write("problem.yaml", "posewright: 1\nrobot: {urdf: " + urdf +
+                                       ", base: base_link, tip: flange}\n"
+                                       "measurement:\n  type: points\n  targets: {P1: [0.24, 0.03, -0.1]}\n"
+                                       "  device: {type: laser_tracker, stations: {A: [4, -1, 0.5]}}\n"
+                                       "variants: {geometric: {parameters: auto}}\ndesign: {poses: 20}\n" +
+                                       workspace);
+  DrawOptions options;
+  options.evenly = 60;
+  options.feasible = 10;
+  options.ways = ways;
+  return draw_problem(read_problem(file), options, Monitor{});
+}
+
+std::string verdict(const ProblemReport& report, std::size_t place) {
+  const int v = report.verdicts[place];
+  return v < 0 ? "" : report.reasons[std::size_t(v)];
+}
+
+TEST(DrawProblem, HasOneVerdictAKeyframeThatItsTipShows) {
+  const ProblemReport report = drawn_problem("workspace: {tool: {z: [0.2, 1.6]}}\n");
+  EXPECT_THAT(report.faults, IsEmpty());
+  EXPECT_EQ(report.evenly, 60);
+  ASSERT_EQ(report.verdicts.size(), 71u);  // home, even ones, feasible ones
+  ASSERT_EQ(report.scene.keyframes.size(), report.verdicts.size());
+  std::set<std::string> met;
+  for (std::size_t k = 0; k < report.verdicts.size(); ++k) {
+    const double z = report.scene.keyframes[k].tip.translation().z();
+    EXPECT_EQ(verdict(report, k), z < 0.2 || z > 1.6 ? "tool outside its box" : "") << z;
+    met.insert(verdict(report, k));
+    EXPECT_TRUE(k <= 60 || report.verdicts[k] == -1);
+  }
+  EXPECT_EQ(met.size(), 2u);
+}
+
+TEST(DrawProblem, NamesWhatIsWrongInSpaceAndDrawsItAllTheSame) {
+  const ProblemReport inside = drawn_problem(
+      "workspace:\n  line_of_sight: {visible: 1}\n"
+      "  collision: {obstacles: [{name: hall, box: [2, 2, 2], at: [4, -1, 0.5]}]}\n");
+  EXPECT_THAT(inside.faults, ElementsAre(HasSubstr("problem.yaml:10: station A stands inside hall")));
+  EXPECT_EQ(inside.scene.stations.size(), 1u);
+  EXPECT_EQ(inside.scene.bodies.back().name, "hall");
+
+  const std::string table =
+      "workspace:\n  motion: {reachable: true}\n"
+      "  collision: {obstacles: [{name: table, plane: [0, 0, 1], at: [0, 0, 0.6]}]}\n";
+  const ProblemReport home = drawn_problem(table);
+  EXPECT_THAT(home.faults, Contains(HasSubstr("home is not free")));
+  EXPECT_THAT(verdict(home, 0), HasSubstr("collision"));
+  const ProblemReport brief = drawn_problem(table, false);
+  EXPECT_THAT(brief.faults, Not(Contains(HasSubstr("home is not free"))));
+  EXPECT_THAT(verdict(brief, 0), HasSubstr("collision"));
+}
+
+TEST(DrawProblem, AProblemIsYamlThatHoldsNoParameters) {
+  const TemporaryFolder folder;
+  EXPECT_TRUE(is_problem(folder.write("a.yaml", "posewright: 1\n")));
+  EXPECT_FALSE(is_problem(folder.write("b.yaml", "# of calibrate\nposewright_parameters: 1\n")));
+  EXPECT_FALSE(is_problem(folder.write("c.json", "{}")));
+}
+
+TEST(DrawProblem, ItsDataAreThoseOfAPage) {
+  const ProblemReport report = drawn_problem("");
+  const auto data = nlohmann::json::parse(report_json(report));
+  EXPECT_EQ(data["schema"], "posewright/report-of-problem/1");
+  EXPECT_EQ(data["keyframes"].size(), data["verdicts"].size());
+  EXPECT_EQ(data["keyframes"][0]["pose"], 0);
+  EXPECT_EQ(data["frames"].size(), report.scene.frames.size());
+  EXPECT_THAT(report_html(report), HasSubstr("posewright/report-of-problem/1"));
+}
+
+}  // namespace
+}  // namespace posewright

@@ -1,0 +1,224 @@
+// node tests/report/live_test.mjs --program PATH --wasm DIR --out DIR [--screenshots DIR] [--address URL]
+// The page that plans, as one file from disk without a network: from a robot to its program, and from readings to a
+// compensated program. DIR has posewright.js and posewright.wasm of `scripts/wasm`. Returns 77 where they or a browser are
+// missing. --address lets the page connect to a program outside of it, for trials.
+import { execFileSync } from 'node:child_process';
+import { existsSync, mkdirSync, readFileSync } from 'node:fs';
+import { join, resolve } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { parseArgs } from 'node:util';
+import { launch, missing, skipped } from './browser.mjs';
+import { about, check, near, verdict } from './checks.mjs';
+import { checkLeftovers, overflow } from './reading_checks.mjs';
+
+const names = ['program', 'wasm', 'out', 'screenshots', 'address'];
+const { values } = parseArgs({ options: Object.fromEntries(names.map((name) => [name, { type: 'string' }])) });
+if (!values.program || !values.wasm || !values.out) {
+  console.error('usage: live_test.mjs --program PATH --wasm DIR --out DIR');
+  process.exit(2);
+}
+const lacking = existsSync(join(values.wasm, 'posewright.wasm')) ? missing() : 'the program for pages is missing (scripts/wasm makes it)';
+if (lacking) {
+  console.log(`Skipped: ${lacking}.`);
+  process.exit(skipped);
+}
+
+const root = fileURLToPath(new URL('../../', import.meta.url));
+const out = resolve(values.out);
+const file = join(out, 'posewright.html');
+mkdirSync(out, { recursive: true });
+execFileSync('node', [join(root, 'report/build_live.mjs'), resolve(values.wasm), file, ...(values.address ? [values.address] : [])]);
+
+/** A KR 270 with few candidates, its plan and the readings of a virtual one, made by the native program. */
+function nativeFiles() {
+  const run = (...words) => execFileSync(resolve(values.program), words, { cwd: out, encoding: 'utf8' });
+  run('init', join(root, 'examples/kr270/kr270.urdf'), '--tracker', '--yes', '--poses', '16', '--force', '-o', 'problem.yaml');
+  const small = ['--candidates', '300', '--restarts', '1', '--proof-time', '0', '--force', '--quiet'];
+  run('plan', 'problem.yaml', ...small);
+  run('simulate', 'problem.yaml', 'plan.json', '--draws', '1', '--data', 'measured.csv', '--force', '--quiet');
+}
+
+const drawings = (page) => page.locator('.live-view').evaluate((e) => Number(e.dataset.drawn ?? 0));
+/** Does something and waits for the picture after it. */
+async function redrawn(page, act) {
+  const before = await drawings(page);
+  await act();
+  await page.waitForFunction((n) => Number(document.querySelector('.live-view').dataset.drawn ?? 0) > n, before);
+}
+const text = (page) => page.locator('.yaml').inputValue();
+const step = (page, name) => page.getByRole('tab', { name }).click();
+async function download(page, act) {
+  const [saved] = await Promise.all([page.waitForEvent('download'), act()]);
+  return { name: saved.suggestedFilename(), text: readFileSync(await saved.path(), 'utf8') };
+}
+async function shot(page, name) {
+  if (!values.screenshots) return;
+  mkdirSync(values.screenshots, { recursive: true });
+  for (const [suffix, width] of [['', 1400], ['-narrow', 420]]) {
+    await page.setViewportSize({ width, height: 900 });
+    await page.waitForTimeout(700);
+    await page.screenshot({ path: join(values.screenshots, `live-${name}${suffix}.png`) });
+  }
+  await page.setViewportSize({ width: 1400, height: 900 });
+}
+
+/** From an empty page to a picture; what is wrong in space is seen. */
+async function checkCell(page) {
+  about('robot, instrument and cell');
+  const start = performance.now();
+  await redrawn(page, () => page.getByRole('combobox', { name: 'Example' }).selectOption('KUKA KR 270'));
+  console.log(`A first picture after ${((performance.now() - start) / 1000).toFixed(1)} s`);
+  check((await text(page)).includes('laser tracker'), 'init has written a problem');
+  check((await page.locator('.verdicts').innerText()).includes('can be measured'), 'configurations are judged');
+  await shot(page, 'robot');
+
+  await step(page, /Cell/);
+  const before = await text(page);
+  await redrawn(page, () => page.getByRole('button', { name: 'Add a box' }).click());
+  check((await page.locator('.live-view .stop').innerText()).trim() === 'Home: collision with box', 'home in the box is seen');
+  await shot(page, 'cell');
+  const x = page.getByRole('spinbutton', { name: 'box, x, mm' });
+  await redrawn(page, async () => (await x.fill('-1500'), await x.blur()));
+  check((await text(page)).includes('at: ["-1500 mm"') || (await text(page)).includes('at: [-1.5'), 'a number moves the box in the text');
+  check(!(await page.locator('.live-view .stop').innerText()).includes('box'), 'and in the picture');
+  await redrawn(page, () => page.getByRole('button', { name: 'Remove box' }).click());
+  check((await text(page)) === before, 'the text is as it was, with all comments');
+
+  const wrong = before.replace('laser_tracker', 'laser_trackr');
+  await page.locator('.yaml').fill(wrong);
+  await page.locator('.gutter .error').waitFor();
+  const line = wrong.split('\n').findIndex((l) => l.includes('laser_trackr')) + 1;
+  check((await page.locator('.gutter .error').innerText()).endsWith(String(line)), 'a message stands at its line', line);
+  check((await page.locator('.editor-part .messages').innerText()).includes("did you mean 'laser_tracker'"), 'with what the program says');
+  await redrawn(page, () => page.locator('.yaml').fill(before));
+}
+
+/** A drag in the picture changes the text. */
+async function checkDrag(page) {
+  await step(page, /Instrument/);
+  const before = await text(page);
+  await page.getByRole('button', { name: 'Top' }).click();
+  await page.waitForTimeout(500);
+  const box = await page.locator('.live-view canvas').boundingBox();
+  const place = await page.locator('.label', { hasText: 'station A' }).evaluate((label) => label.style.transform.match(/-?\d+/g).map(Number));
+  await page.mouse.move(box.x + place[0], box.y + place[1]);
+  await page.mouse.down();
+  await page.mouse.move(box.x + place[0] - 40, box.y + place[1] + 10, { steps: 4 });
+  await redrawn(page, () => page.mouse.up());
+  const changed = (await text(page)).split('\n').filter((l, k) => l !== before.split('\n')[k]);
+  check(changed.length === 1 && /stations: \{A: \[/.test(changed[0]), 'dragging the tracker changes its line alone', changed);
+  await redrawn(page, () => page.getByRole('button', { name: 'Undo' }).click());
+  check((await text(page)) === before, 'Undo brings it back');
+}
+
+/** @returns the text of the program that was exported */
+async function checkPlan(page) {
+  about('plan and program');
+  await step(page, /Plan/);
+  await redrawn(page, async () => {
+    await page.getByRole('slider', { name: 'Number of poses' }).fill('14');
+    await page.getByRole('slider', { name: 'Number of poses' }).dispatchEvent('change');
+  });
+  check(/\n {2}poses: 14\n/.test(await text(page)), 'the slider changes the text');
+  await page.waitForFunction(() => /mm|µm/.test(document.querySelector('.expected').textContent));
+  await page.getByRole('slider', { name: 'Time at most' }).fill('10');
+  const start = performance.now();
+  await page.getByRole('button', { name: 'Plan', exact: true }).click();
+  await page.locator('#result iframe').waitFor();
+  const report = page.frameLocator('#result iframe');
+  check((await report.locator('.tile b').first().textContent()) === '14', 'the report has 14 poses');
+  console.log(`A plan and its report after ${((performance.now() - start) / 1000).toFixed(1)} s`);
+  await shot(page, 'plan');
+  await step(page, /Take away/);
+  const plan = JSON.parse((await download(page, () => page.getByRole('button', { name: 'plan.json' }).click())).text);
+  check(plan.poses.length === 14, 'plan.json can be taken away', plan.poses.length);
+  const files = [];
+  page.on('download', async (d) => files.push(d.suggestedFilename()));
+  const program = await download(page, () => page.getByRole('button', { name: 'Write the program' }).click());
+  await page.waitForTimeout(500);
+  check(files.includes('CALPOSES.src') && files.includes('CALPOSES.dat'), 'a KRL program can be taken away', files);
+  check(program.text.length > 100, 'that is not empty');
+  await shot(page, 'take');
+}
+
+/** Readings are calibrated as the native program does it; its programs come back compensated. */
+async function checkMeasured(page) {
+  about('measured data');
+  nativeFiles();
+  await step(page, /Robot/);
+  await redrawn(page, () => page.locator('#step-0 input[type=file]').first().setInputFiles([join(out, 'problem.yaml'), join(root, 'examples/kr270/kr270.urdf')]));
+  await page.evaluate(() => document.querySelector('#result iframe')?.remove());
+  await step(page, /Measured/);
+  await page.locator('#step-5 input[type=file]').first().setInputFiles(join(out, 'measured.csv'));
+  await page.locator('#result iframe').waitFor();
+  const native = JSON.parse(
+    execFileSync(resolve(values.program), ['calibrate', 'problem.yaml', 'measured.csv', '--json', '--quiet', '-o', '-'], { cwd: out, encoding: 'utf8', stdio: ['ignore', 'pipe', 'ignore'] }),
+  );
+  await step(page, /Take away/);
+  const own = (await download(page, () => page.getByRole('button', { name: 'calibrated.yaml' }).click())).text;
+  const value = (p) => Number(own.match(new RegExp(`${p.name.replace(/\./g, '\\.')}["']?:\\s*\\{[^}]*?value: ([-+.e\\d]+)`))?.[1] ?? NaN);
+  const some = native.parameters.filter((p) => Number.isFinite(value(p)));
+  for (const p of some.slice(0, 3)) near(value(p), p.value, 1e-6, `${p.name} is as the native program has it`);
+  await shot(page, 'measured');
+  await step(page, /Measured/);
+  const compensated = await download(page, () => page.locator('#step-5 input[type=file]').nth(1).setInputFiles(join(out, 'poses.csv')));
+  check(compensated.name === 'corrected-poses.csv', 'poses come back compensated', compensated.name);
+}
+
+async function checkBadInput(page) {
+  about('bad input');
+  await step(page, /Robot/);
+  const before = await text(page);
+  const give = (name, buffer) => page.locator('#step-0 input[type=file]').first().setInputFiles({ name, mimeType: 'text/plain', buffer });
+  const said = () => page.locator('.complaint').innerText();
+  await give('notes.txt', Buffer.from('nothing'));
+  await page.waitForFunction(() => /no robot/.test(document.querySelector('.complaint').textContent));
+  await give('broken.urdf', Buffer.from('<robot name="b"><link name="a"/>'));
+  await page.waitForFunction(() => /broken.urdf/.test(document.querySelector('.complaint').textContent));
+  check(!(await said()).includes('\n'), 'a broken URDF is one sentence', await said());
+  await page.locator('#step-0 .drop').evaluate((drop) => {
+    const data = new DataTransfer();
+    const large = new File(['<robot'], 'large.urdf');
+    Object.defineProperty(large, 'size', { value: 2e8 });
+    data.items.add(large);
+    const entry = { isFile: true, name: 'large.urdf', file: (take) => take(large) };
+    const event = new DragEvent('drop', { bubbles: true, cancelable: true });
+    Object.defineProperty(event, 'dataTransfer', { value: { items: [{ webkitGetAsEntry: () => entry }] } });
+    drop.dispatchEvent(event);
+  });
+  await page.waitForFunction(() => /100 MB/.test(document.querySelector('.complaint').textContent));
+  check((await text(page)) === before, 'nothing is lost');
+}
+
+const browser = await launch({ webgl: true });
+const context = await browser.newContext({ viewport: { width: 1400, height: 900 }, colorScheme: 'light', reducedMotion: 'reduce', acceptDownloads: true });
+if (!values.address) await context.setOffline(true);
+const page = await context.newPage();
+page.setDefaultTimeout(240_000);
+const complaints = [];
+page.on('console', (m) => ['error', 'warning'].includes(m.type()) && !/GPU stall/.test(m.text()) && complaints.push(m.text()));
+page.on('pageerror', (error) => complaints.push(String(error)));
+page.on('request', (r) => !r.isNavigationRequest() && !/^(data|blob):/.test(r.url()) && !(values.address && r.url().startsWith(values.address)) && complaints.push(`request of ${r.url()}`));
+await page.goto(`file://${file}`);
+await checkCell(page);
+await checkDrag(page);
+await checkPlan(page);
+await checkMeasured(page);
+await checkBadInput(page);
+await checkLeftovers(page);
+about('the page');
+for (const width of [1400, 420]) {
+  await page.setViewportSize({ width, height: 900 });
+  for (const name of [/Robot/, /Instrument/, /Cell/, /Plan/, /Take away/, /Measured/]) {
+    await step(page, name);
+    const wider = await overflow(page);
+    check(wider <= 0, `nothing is wider than the page at ${width} px, ${name}`, wider);
+  }
+}
+const kept = await text(page);
+await page.waitForTimeout(1000);
+await redrawn(page, () => page.reload());
+check((await text(page)) === kept, 'the problem is there when the page is opened again');
+check(complaints.length === 0, 'no error, no warning, no request', complaints.join(' | '));
+await browser.close();
+process.exitCode = verdict();

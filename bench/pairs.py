@@ -4,8 +4,8 @@
     bench/pairs.py BEFORE AFTER [--rows report,help] [--times 2] [--robots ROBOTS]
 
 Each row runs BEFORE, AFTER, BEFORE, AFTER, … on the same files, which AFTER prepares. ROBOTS has the makers' robots of
-examples/cells/README.md; rows that need them are left out without. Prints a row of a Markdown table for each, with one
-figure of the result of both: log det, a share of the best, bytes of a page.
+examples/cells/README.md; rows that need them are left out without. Prints a row of a Markdown table for each, with the
+peak memory of AFTER and one figure of the result of both: log det, a share of the best, bytes of a page.
 """
 
 import argparse
@@ -27,13 +27,13 @@ LACKING = "  lacking: {parameters: auto, unmodelled: auto}\n"
 
 
 def run(program, words, folder):
-    """@return CPU seconds of the process and its children, its output"""
+    """@return CPU seconds of the process and its children, its peak memory in MiB, its output"""
     process = subprocess.Popen([program, *words], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     text = process.stdout.read()
     _, status, usage = os.wait4(process.pid, 0)
     if os.waitstatus_to_exitcode(status) not in (0, 1):
         sys.exit(f"{' '.join(words)}: {text}")
-    return usage.ru_utime + usage.ru_stime, text
+    return usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024, text
 
 
 def log_det(folder, _):
@@ -68,8 +68,10 @@ def nothing(_, __):
 
 def gaussian(folder, n, m, seed):
     name = f"gaussian-{n}-{m}.npy"
+    # In a process of its own: the peak memory of a child is at least that of its parent.
+    make = f"import numpy as np; np.save({name!r}, np.random.default_rng({seed}).standard_normal(({n}, {m})).reshape({n}, 1, {m}))"
     if not (folder / name).exists():
-        np.save(folder / name, np.random.default_rng(seed).standard_normal((n, m)).reshape(n, 1, m))
+        subprocess.run([sys.executable, "-c", make], cwd=folder, check=True)
     return name
 
 
@@ -124,12 +126,14 @@ def rows(program, folder, robots):
     table = {
         "help": lambda: (["--help"], nothing),
         "report kr270, 30 poses": lambda: report(kr270, 30),
+        "report kr270, 300 poses": lambda: report(kr270, 300),
         "report cell, 30 poses": lambda: report(cell, 30),
         "evaluate --drop 2 --add 2, cell, 30 poses": lambda: (
             ["evaluate", cell, planned(program, folder, cell, 30) + ".csv", "--drop", "2", "--add", "2", "--json", "--quiet"], changes),
         "plan kr270": lambda: (["plan", kr270, *PLAN], log_det),
         "plan cell": lambda: (["plan", cell, *PLAN], log_det),
         "plan telescope": lambda: (["plan", "examples/telescope/problem.yaml", *PLAN], log_det),
+        "plan two stations": lambda: (["plan", "examples/instruments/tracker_two_stations.yaml", *PLAN], log_det),
         "plan 8 joints": lambda: (["plan", eight_joints(folder), *PLAN], log_det),
         "select greedy 1,000,000 x 20, 40": lambda: select(gaussian(folder, 1_000_000, 20, 1), "--poses", "40", "--method", "greedy"),
         "select 5,000 x 10, 700": lambda: select(gaussian(folder, 5000, 10, 1), "--poses", "700"),
@@ -160,7 +164,7 @@ def main():
     arguments = parser.parse_args()
     wanted = tuple(arguments.rows.split(",")) if arguments.rows else ("",)
     programs = [arguments.before.resolve(), arguments.after.resolve()]
-    print("| command | before: CPU s | after | result before | after |\n| --- | --- | --- | --- | --- |")
+    print("| command | before: CPU s | after | MiB | result before | after |\n| --- | --- | --- | --- | --- | --- |")
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         robots = arguments.robots.resolve() if arguments.robots else None
@@ -172,11 +176,11 @@ def main():
             seconds, results = [[], []], [None, None]
             for _ in range(arguments.times):
                 for k, program in enumerate(programs):
-                    cpu, text = run(program, words, folder)
+                    cpu, memory, text = run(program, words, folder)
                     seconds[k].append(cpu)
                     results[k] = figure(folder, text)
             before, after = (statistics.median(s) for s in seconds)
-            print(f"| {title} | {before:.3g} | {after:.3g} | {results[0]} | {results[1]} |", flush=True)
+            print(f"| {title} | {before:.3g} | {after:.3g} | {memory:.0f} | {results[0]} | {results[1]} |", flush=True)
 
 
 if __name__ == "__main__":

@@ -137,13 +137,13 @@ TEST(CommandLine, EveryMistakeGivesOneLineTheRightCodeAndNoFile) {
       {{"select", blocks, "--rows", "2", "--poses", "5", "--nuisance", "4"}, 2, "--nuisance 4; 0 to 3"},
       {{"observe", telescope, "--variant", "none"}, 2, "has no variant 'none'"},
       {{"observe", telescope, "--restarts", "4"}, 2, "unrecognised option"},
-      {{"report"}, 2, "PLAN or RESULT is missing"},
+      {{"report"}, 2, "PLAN, RESULT or PROBLEM is missing"},
       {{"report", blocks},
        2,
        "b.csv: is no JSON; plan.json, or the --json output of calibrate, compare, next, simulate"},
       {{"report", blocks, blocks}, 2, "b.csv: is no JSON"},
       {{"report", blocks, blocks, "--brief"}, 2, "--brief does not go with two plans; it goes with one PLAN"},
-      {{"report", "a", "b", "c"}, 2, "unexpected argument 'b'; one PLAN or RESULT is expected"},
+      {{"report", "a", "b", "c"}, 2, "unexpected argument 'b'; one PLAN, RESULT or PROBLEM is expected"},
   };
   for (const BadCommand& bad : table) {
     const ProgramRun run = run_program(folder.path(), bad.words);

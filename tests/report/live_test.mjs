@@ -3,7 +3,7 @@
 // compensated program. DIR has posewright.js and posewright.wasm of `scripts/wasm`. Returns 77 where they or a browser are
 // missing. --address lets the page connect to a program outside of it, for trials.
 import { execFileSync } from 'node:child_process';
-import { existsSync, mkdirSync, readFileSync } from 'node:fs';
+import { copyFileSync, existsSync, mkdirSync, readFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { parseArgs } from 'node:util';
@@ -32,10 +32,11 @@ execFileSync('node', [join(root, 'report/build_live.mjs'), resolve(values.wasm),
 /** A KR 270 with few candidates, its plan and the readings of a virtual one, made by the native program. */
 function nativeFiles() {
   const run = (...words) => execFileSync(resolve(values.program), words, { cwd: out, encoding: 'utf8' });
-  run('init', join(root, 'examples/kr270/kr270.urdf'), '--tracker', '--yes', '--poses', '16', '--force', '-o', 'problem.yaml');
+  copyFileSync(join(root, 'examples/kr270/kr270.urdf'), join(out, 'kr270.urdf'));
+  run('init', 'kr270.urdf', '--tracker', '--yes', '--poses', '16', '--force', '-o', 'problem.yaml');
   const small = ['--candidates', '300', '--restarts', '1', '--proof-time', '0', '--force', '--quiet'];
   run('plan', 'problem.yaml', ...small);
-  run('simulate', 'problem.yaml', 'plan.json', '--draws', '1', '--data', 'measured.csv', '--force', '--quiet');
+  run('simulate', 'problem.yaml', 'plan.json', '--draws', '2', '--data', 'measured.csv', '--force', '--quiet');
 }
 
 const drawings = (page) => page.locator('.live-view').evaluate((e) => Number(e.dataset.drawn ?? 0));
@@ -146,7 +147,7 @@ async function checkMeasured(page) {
   about('measured data');
   nativeFiles();
   await step(page, /Robot/);
-  await redrawn(page, () => page.locator('#step-0 input[type=file]').first().setInputFiles([join(out, 'problem.yaml'), join(root, 'examples/kr270/kr270.urdf')]));
+  await redrawn(page, () => page.locator('#step-0 input[type=file]').first().setInputFiles([join(out, 'problem.yaml'), join(out, 'kr270.urdf')]));
   await page.evaluate(() => document.querySelector('#result iframe')?.remove());
   await step(page, /Measured/);
   await page.locator('#step-5 input[type=file]').first().setInputFiles(join(out, 'measured.csv'));

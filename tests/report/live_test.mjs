@@ -3,7 +3,7 @@
 // compensated program. DIR has posewright.js and posewright.wasm of `scripts/wasm`. Returns 77 where they or a browser are
 // missing. --address lets the page connect to a program outside of it, for trials.
 import { execFileSync } from 'node:child_process';
-import { existsSync, mkdirSync, readFileSync } from 'node:fs';
+import { copyFileSync, existsSync, mkdirSync, readFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { parseArgs } from 'node:util';
@@ -32,10 +32,11 @@ execFileSync('node', [join(root, 'report/build_live.mjs'), resolve(values.wasm),
 /** A KR 270 with few candidates, its plan and the readings of a virtual one, made by the native program. */
 function nativeFiles() {
   const run = (...words) => execFileSync(resolve(values.program), words, { cwd: out, encoding: 'utf8' });
-  run('init', join(root, 'examples/kr270/kr270.urdf'), '--tracker', '--yes', '--poses', '16', '--force', '-o', 'problem.yaml');
+  copyFileSync(join(root, 'examples/kr270/kr270.urdf'), join(out, 'kr270.urdf'));
+  run('init', 'kr270.urdf', '--tracker', '--yes', '--poses', '16', '--force', '-o', 'problem.yaml');
   const small = ['--candidates', '300', '--restarts', '1', '--proof-time', '0', '--force', '--quiet'];
   run('plan', 'problem.yaml', ...small);
-  run('simulate', 'problem.yaml', 'plan.json', '--draws', '1', '--data', 'measured.csv', '--force', '--quiet');
+  run('simulate', 'problem.yaml', 'plan.json', '--draws', '2', '--data', 'measured.csv', '--force', '--quiet');
 }
 
 const drawings = (page) => page.locator('.live-view').evaluate((e) => Number(e.dataset.drawn ?? 0));
@@ -139,6 +140,32 @@ async function checkPlan(page) {
   check(files.includes('CALPOSES.src') && files.includes('CALPOSES.dat'), 'a KRL program can be taken away', files);
   check(program.text.length > 100, 'that is not empty');
   await shot(page, 'take');
+  const edited = (await text(page)).replace('poses: 14', 'poses: 13');
+  await redrawn(page, () => page.locator('.yaml').fill(edited));
+  check((await page.getByRole('button', { name: 'plan.json' }).count()) === 0, 'the plan of another text cannot be taken away');
+  check(await page.getByRole('button', { name: 'Write the program' }).isDisabled(), 'nor its program');
+  check(/changed since plan.json/.test(await page.locator('#step-4').innerText()), 'and the page says why');
+  check(/before it was changed/.test(await page.locator('#result-title').innerText()), 'its report is marked');
+  await redrawn(page, () => page.locator('.yaml').fill(edited.replace('poses: 13', 'poses: 14')));
+  check((await page.getByRole('button', { name: 'plan.json' }).count()) === 1, 'with its own text it can');
+}
+
+/** Stop ends a search; the plan from before stays. */
+async function checkStop(page) {
+  await step(page, /Plan/);
+  const stop = page.locator('#step-3').getByRole('button', { name: 'Stop' });
+  await page.getByRole('button', { name: 'Plan', exact: true }).click();
+  await stop.click();
+  await page.waitForFunction(() => /Stopped: the plan from before stays/.test(document.querySelector('#step-3 .busy').textContent));
+  check(!(await stop.isVisible()) && (await page.getByRole('button', { name: 'Plan', exact: true }).isEnabled()), 'a search can be stopped and begun again');
+  let asked = 0;
+  page.on('dialog', async (dialog) => (asked++, await dialog.dismiss()));
+  await page.getByRole('button', { name: 'Plan', exact: true }).click();
+  await stop.waitFor();
+  await page.close({ runBeforeUnload: true });
+  for (let k = 0; k < 50 && asked === 0; k++) await new Promise((resolve) => setTimeout(resolve, 100));
+  check(asked === 1, 'a page that plans asks before it is left', asked);
+  await stop.click();
 }
 
 /** Readings are calibrated as the native program does it; its programs come back compensated. */
@@ -146,7 +173,7 @@ async function checkMeasured(page) {
   about('measured data');
   nativeFiles();
   await step(page, /Robot/);
-  await redrawn(page, () => page.locator('#step-0 input[type=file]').first().setInputFiles([join(out, 'problem.yaml'), join(root, 'examples/kr270/kr270.urdf')]));
+  await redrawn(page, () => page.locator('#step-0 input[type=file]').first().setInputFiles([join(out, 'problem.yaml'), join(out, 'kr270.urdf')]));
   await page.evaluate(() => document.querySelector('#result iframe')?.remove());
   await step(page, /Measured/);
   await page.locator('#step-5 input[type=file]').first().setInputFiles(join(out, 'measured.csv'));
@@ -158,11 +185,18 @@ async function checkMeasured(page) {
   const own = (await download(page, () => page.getByRole('button', { name: 'calibrated.yaml' }).click())).text;
   const value = (p) => Number(own.match(new RegExp(`${p.name.replace(/\./g, '\\.')}["']?:\\s*\\{[^}]*?value: ([-+.e\\d]+)`))?.[1] ?? NaN);
   const some = native.parameters.filter((p) => Number.isFinite(value(p)));
+  check(some.length > 2, 'calibrated.yaml has the parameters', some.length);
   for (const p of some.slice(0, 3)) near(value(p), p.value, 1e-6, `${p.name} is as the native program has it`);
   await shot(page, 'measured');
   await step(page, /Measured/);
+  const urdf = await download(page, () => page.getByRole('button', { name: 'Corrected URDF' }).click());
+  check(urdf.name === 'corrected.urdf' && urdf.text.includes('<robot'), 'the calibrated robot can be taken away', urdf.name);
+  await page.getByRole('button', { name: 'Next poses' }).click();
+  await page.waitForFunction(() => document.querySelector('#result-title').textContent === 'Next poses');
+  await shot(page, 'next');
   const compensated = await download(page, () => page.locator('#step-5 input[type=file]').nth(1).setInputFiles(join(out, 'poses.csv')));
   check(compensated.name === 'corrected-poses.csv', 'poses come back compensated', compensated.name);
+  check(compensated.text !== readFileSync(join(out, 'poses.csv'), 'utf8'), 'and are other ones');
 }
 
 async function checkBadInput(page) {
@@ -176,6 +210,7 @@ async function checkBadInput(page) {
   await give('broken.urdf', Buffer.from('<robot name="b"><link name="a"/>'));
   await page.waitForFunction(() => /broken.urdf/.test(document.querySelector('.complaint').textContent));
   check(!(await said()).includes('\n'), 'a broken URDF is one sentence', await said());
+  check((await text(page)) === before, 'the problem stays', (await text(page)).slice(0, 200));
   await page.locator('#step-0 .drop').evaluate((drop) => {
     const data = new DataTransfer();
     const large = new File(['<robot'], 'large.urdf');
@@ -188,6 +223,42 @@ async function checkBadInput(page) {
   });
   await page.waitForFunction(() => /100 MB/.test(document.querySelector('.complaint').textContent));
   check((await text(page)) === before, 'nothing is lost');
+
+  const mesh = (link) => `<link name="${link}"><collision><geometry><mesh filename="package://arm/meshes/${link}.stl"/></geometry></collision></link>`;
+  const solid = readFileSync(join(root, 'examples/kr270/kr270.urdf'), 'utf8');
+  await give('bare.urdf', Buffer.from(solid.replace(/<link name="(link_[12])">.*?<\/link>/gs, (_, link) => mesh(link))));
+  await page.waitForFunction(() => /2 of its meshes are missing \(link_1.stl, link_2.stl\)/.test(document.querySelector('#step-0 [role=status]').textContent));
+  check((await text(page)).includes('bare.urdf') && /no collision is checked/.test(await said()), 'a robot without its meshes has a problem');
+  await give('link_1.stl', Buffer.from('no mesh'));
+  await page.waitForFunction(() => /link_1.stl' is not an STL/.test(document.querySelector('.complaint').textContent));
+  check(!(await said()).includes('\n'), 'a broken mesh is one sentence', await said());
+}
+
+/** What stands on a page whose browser cannot run the program. @param {() => void} spoil runs before the page's own scripts */
+async function complaintWith(context, spoil) {
+  const page = await context.newPage();
+  await page.addInitScript(spoil);
+  await page.goto(`file://${file}`);
+  await page.getByRole('combobox', { name: 'Example' }).selectOption('KUKA KR 270');
+  await page.locator('.complaint').waitFor();
+  const said = await page.locator('.complaint').innerText();
+  await page.close();
+  return said;
+}
+
+async function checkWeakBrowsers(context) {
+  about('browsers that cannot run the program');
+  const old = await complaintWith(context, () => (WebAssembly.compile = () => Promise.reject(new Error('invalid SIMD opcode'))));
+  check(old === 'This browser cannot run the program (invalid SIMD opcode); browsers of 2023 or later can.', 'one without SIMD is told', old);
+  const full = await complaintWith(context, () => {
+    window.Worker = class {
+      postMessage() {
+        setTimeout(() => this.onmessage({ data: { failed: 'RuntimeError: memory access out of bounds' } }));
+      }
+      terminate() {}
+    };
+  });
+  check(/^the browser has no more memory for this problem: fewer candidates/.test(full), 'one without memory is told', full);
 }
 
 const browser = await launch({ webgl: true });
@@ -203,6 +274,7 @@ await page.goto(`file://${file}`);
 await checkCell(page);
 await checkDrag(page);
 await checkPlan(page);
+await checkStop(page);
 await checkMeasured(page);
 await checkBadInput(page);
 await checkLeftovers(page);
@@ -217,8 +289,11 @@ for (const width of [1400, 420]) {
 }
 const kept = await text(page);
 await page.waitForTimeout(1000);
-await redrawn(page, () => page.reload());
+await page.reload();
+await page.waitForFunction(() => document.querySelector('.live-view')?.dataset.drawn);
 check((await text(page)) === kept, 'the problem is there when the page is opened again');
 check(complaints.length === 0, 'no error, no warning, no request', complaints.join(' | '));
+await page.close();
+await checkWeakBrowsers(context);
 await browser.close();
 process.exitCode = verdict();

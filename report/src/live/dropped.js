@@ -19,14 +19,15 @@ async function filesOf(entry, folder = '') {
   return all;
 }
 
-/** @param {[string, File][]} found @param {(text: string) => void} complain @returns {Promise<Map<string, Uint8Array>>} */
-async function contents(found, complain) {
+/** @param {[string, File][]} found @returns {Promise<{files: Map<string, Uint8Array>, refused: string[]}>} */
+async function contents(found) {
   const files = new Map();
+  const refused = [];
   for (const [path, file] of found) {
-    if (file.size > mostBytes) complain(`${path} has ${Math.round(file.size / 1e6)} MB; files of up to 100 MB are read.`);
+    if (file.size > mostBytes) refused.push(`${path} has ${Math.round(file.size / 1e6)} MB; files of up to 100 MB are read.`);
     else files.set(path, new Uint8Array(await file.arrayBuffer()));
   }
-  return files;
+  return { files, refused };
 }
 
 /**
@@ -36,8 +37,9 @@ async function contents(found, complain) {
 export function dropZone({ label, hint, take, complain, folder = false }) {
   const taken = async (found) => {
     try {
-      const files = await contents(await found, complain);
+      const { files, refused } = await contents(await found);
       if (files.size > 0) await take(files);
+      if (refused.length > 0) complain(refused.join(' '));
     } catch (error) {
       complain(`These files cannot be read: ${error.message}.`);
     }

@@ -37,12 +37,12 @@ export function editor(project) {
     typing = setTimeout(() => project.write(area.value, { typing: true }), 600);
   });
   project.addEventListener('text', (event) => {
+    undo.disabled = project.before.length === 0;
     if (event.by?.typing) return;
     clearTimeout(typing);
     const { scrollTop } = area;
     area.value = project.text;
     area.scrollTop = scrollTop;
-    undo.disabled = project.before.length === 0;
     number();
   });
 

@@ -24,7 +24,9 @@ async function inStore(mode, work) {
   }
 }
 
-/** @param {{files: Map<string, Uint8Array>, problem: string}} project */
+/** @typedef {{files: Map<string, Uint8Array>, problem: string, made: Map<string, string>}} Kept of a project.js */
+
+/** @param {Kept} project */
 export const keep = (project) => inStore('readwrite', (objects) => objects.put(project, store));
-/** @returns {Promise<{files: Map<string, Uint8Array>, problem: string}|undefined>} */
+/** @returns {Promise<Kept|undefined>} */
 export const kept = () => inStore('readonly', (objects) => objects.get(store));

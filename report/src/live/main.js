@@ -24,50 +24,59 @@ import { documentOf } from './yaml_edit.js';
  * @property {ReturnType<typeof editor>} editor
  * @property {ReturnType<typeof resultFrame>} result
  * @property {(text: string) => void} complain
- * @property {(files: Map<string, Uint8Array>) => Promise<void>} begin writes a problem for the robot
- * @property {string} [robot] path
+ * @property {(args: string[]) => Promise<any>} list what the program lists as JSON; undefined: it could not
+ * @property {() => string|undefined} robotOf path of the URDF that the problem names
+ * @property {(files: Map<string, Uint8Array>, robot?: string) => Promise<boolean>} begin writes a problem for the robot; whether it could
  * @property {() => string[]} [instrumentWords] options of init
  * @property {boolean} [planning]
  * @property {() => void} quickLook the error to expect, roughly
- * @property {{text: string, bytes: Uint8Array}} [quick] its plan, and the problem it is for
+ * @property {{text: string, bytes: Uint8Array, poses: Uint8Array}} [quick] its plan, its poses, and the problem they are for
  */
 
+const project = new Project();
 const said = h('p', { class: 'complaint', role: 'alert', hidden: true });
 
 /** @type {any} */
 const live = {
-  project: new Project(),
+  project,
   look: new Program(),
   work: new Program(),
-  result: resultFrame(),
+  result: resultFrame(project),
   complain(text) {
     said.textContent = text;
     said.hidden = text === '';
   },
-  async begin(files) {
+  robotOf() {
+    const urdf = documentOf(project.text)?.getIn(['robot', 'urdf']);
+    return typeof urdf === 'string' ? joined(project.folder, urdf) : undefined;
+  },
+  async list(args) {
+    const { code, out, err } = await live.work.run({ args: [...args, '--json'], files: new Map() });
+    if (code === 0) return JSON.parse(out);
+    live.complain(messagesOf(err, '').map((m) => m.text).join(' '));
+    return undefined;
+  },
+  async begin(files, robot = live.robotOf()) {
     live.complain('');
-    live.robot ??= robotOf(live.project);
-    if (!live.robot) return live.complain('There is no robot yet: drop a URDF or choose an example.');
-    const args = ['init', live.robot, ...live.instrumentWords(), '--yes', '-o', 'problem.yaml', '--force'];
-    const { code, err, files: written } = await live.work.run({ args, files });
-    const messages = messagesOf(err, live.robot);
-    if (code !== 0 || !written.has('problem.yaml')) {
-      live.complain(messages.map((m) => (m.line > 0 ? `${nameOf(live.robot)}, line ${m.line}: ${m.text}` : m.text)).join(' '));
-      return;
+    if (!robot) {
+      live.complain('There is no robot yet: drop a URDF or choose an example.');
+      return false;
     }
-    if (live.project.problem === 'problem.yaml' && robotOf(live.project) === live.robot) {
+    const args = ['init', robot, ...live.instrumentWords(), '--yes', '-o', 'problem.yaml', '--force'];
+    const { code, err, files: written } = await live.work.run({ args, files });
+    const messages = messagesOf(err, robot);
+    if (code !== 0 || !written.has('problem.yaml')) {
+      live.complain(messages.map((m) => (m.line > 0 ? `${nameOf(robot)}, line ${m.line}: ${m.text}` : m.text)).join(' '));
+      return false;
+    }
+    if (live.project.problem === 'problem.yaml' && live.robotOf() === robot) {
       live.project.add([...files, ...[...written].filter(([path]) => path !== 'problem.yaml')]);
       live.project.write(new TextDecoder().decode(written.get('problem.yaml')));
     } else live.project.open(new Map([...files, ...written]), 'problem.yaml');
     live.complain(messages.map((m) => m.text).join(' '));
+    return true;
   },
 };
-
-/** The URDF of a problem. @param {Project} project */
-function robotOf(project) {
-  const urdf = documentOf(project.text)?.getIn(['robot', 'urdf']);
-  return typeof urdf === 'string' ? joined(project.folder, urdf) : undefined;
-}
 
 function build() {
   const examples = JSON.parse(document.getElementById('examples').textContent);

@@ -40,7 +40,13 @@ export class Program {
   }
 
   async #run({ args, files, folder = '', onLine }) {
-    const { url, module } = await programParts();
+    let ready;
+    try {
+      ready = await programParts();
+    } catch (error) {
+      return { code: 1, out: '', err: [`posewright: ${error.message}`], files: new Map() };
+    }
+    const { url, module } = ready;
     this.worker ??= new Worker(url);
     const err = [];
     return new Promise((resolve) => {

@@ -22,6 +22,8 @@ export class Project extends EventTarget {
     this.problem = '';
     /** @type {string[]} */
     this.before = [];
+    /** Files that the program made, with the problem's text that each is of. @type {Map<string, string>} */
+    this.made = new Map();
   }
 
   get text() {
@@ -39,10 +41,21 @@ export class Project extends EventTarget {
     return bytes && decoder.decode(bytes);
   }
 
-  /** Another robot. @param {Map<string, Uint8Array>} files @param {string} problem */
-  open(files, problem) {
+  /** The files without what the program made of them. */
+  get given() {
+    return new Map([...this.files].filter(([path]) => !this.made.has(path)));
+  }
+
+  /** Whether a file is there and is no result of another text of the problem. @param {string} path */
+  current(path) {
+    return this.files.has(path) && (this.made.get(path) ?? this.text) === this.text;
+  }
+
+  /** Another robot. @param {Map<string, Uint8Array>} files @param {string} problem @param {Map<string, string>} [made] */
+  open(files, problem, made = new Map()) {
     this.files = files;
     this.problem = problem;
+    this.made = made;
     this.before = [];
     this.#changed('files');
     this.#changed('text');
@@ -51,7 +64,10 @@ export class Project extends EventTarget {
   /** @param {string} text @param {any} [by] who changed it, so that its own listener may leave it alone */
   write(text, by) {
     if (text === this.text) return;
-    if (by?.typing !== true) this.before.push(this.text);
+    // What is typed in one go is one step back.
+    const typed = by?.typing === true;
+    if (!typed || !this.typed) this.before.push(this.text);
+    this.typed = typed;
     this.files.set(this.problem, encoder.encode(text));
     this.#changed('text', by);
   }
@@ -59,26 +75,31 @@ export class Project extends EventTarget {
   undo() {
     const text = this.before.pop();
     if (text === undefined) return;
+    this.typed = false;
     this.files.set(this.problem, encoder.encode(text));
     this.#changed('text');
   }
 
-  /** @param {Map<string, Uint8Array>|[string, Uint8Array][]} files */
-  add(files) {
-    for (const [path, bytes] of files) this.files.set(path, bytes);
+  /** @param {Map<string, Uint8Array>|[string, Uint8Array][]} files @param {string} [text] the problem that they are results of */
+  add(files, text) {
+    for (const [path, bytes] of files) {
+      this.files.set(path, bytes);
+      if (text === undefined) this.made.delete(path);
+      else this.made.set(path, text);
+    }
     this.#changed('files');
   }
 
   /** What the page had when it was closed. */
   async restore() {
     const old = await kept();
-    if (old?.files.has(old.problem)) this.open(old.files, old.problem);
+    if (old?.files.has(old.problem)) this.open(old.files, old.problem, old.made);
     return this.problem !== '';
   }
 
   #changed(name, by) {
     this.dispatchEvent(Object.assign(new Event(name), { by }));
     clearTimeout(this.waiting);
-    this.waiting = setTimeout(() => keep({ files: this.files, problem: this.problem }), 500);
+    this.waiting = setTimeout(() => keep({ files: this.files, problem: this.problem, made: this.made }), 500);
   }
 }

@@ -1,15 +1,22 @@
 import { h } from '../dom.js';
 
-/** The page that the program writes, as it is, in a frame that is as high as what it shows. */
-export function resultFrame() {
+/**
+ * The page that the program writes, as it is, in a frame that is as high as what it shows.
+ * @param {import('./project.js').Project} project
+ */
+export function resultFrame(project) {
   const title = h('h2', { id: 'result-title' }, 'Result');
   const holder = h('div', {});
   const element = h('section', { id: 'result', class: 'result', hidden: true, 'aria-labelledby': 'result-title' }, title, holder);
+  let shown = { what: '', text: '' };
+  const tell = () => (title.textContent = project.text === shown.text ? shown.what : `${shown.what}, of the problem before it was changed`);
+  project.addEventListener('text', tell);
   return {
     element,
     /** @param {string} what @param {string} html */
     show(what, html) {
-      title.textContent = what;
+      shown = { what, text: project.text };
+      tell();
       const frame = h('iframe', { title: what, srcdoc: html });
       frame.addEventListener('load', () => {
         const { documentElement } = frame.contentDocument;

@@ -3,6 +3,9 @@ import { folderOf, joined, nameOf } from './project.js';
 const decoder = new TextDecoder();
 const isRobot = (path, bytes) => /\.(urdf|xml|xacro)$/i.test(path) && /<robot[\s>]/.test(decoder.decode(bytes.subarray(0, 20000)));
 
+/** Whether meshes are among dropped files. @param {Map<string, Uint8Array>} files */
+export const hasMesh = (files) => [...files.keys()].some((path) => /\.(stl|obj|ply|dae)$/i.test(path));
+
 /** The robot among dropped files; undefined: none. @param {Map<string, Uint8Array>} files */
 export function robotAmong(files) {
   const robots = [...files].filter(([path, bytes]) => isRobot(path, bytes)).map(([path]) => path);

@@ -1,6 +1,6 @@
 import { nameOf } from './project.js';
 
-/** @param {string} path @param {Uint8Array|string} bytes */
+/** @param {string} path of which the name is taken @param {Uint8Array|string} bytes */
 export function saveFile(path, bytes) {
   const url = URL.createObjectURL(new Blob([bytes]));
   Object.assign(document.createElement('a'), { href: url, download: nameOf(path) }).click();

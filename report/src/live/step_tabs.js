@@ -18,6 +18,7 @@ export function stepTabs(steps, chosen) {
       tab.tabIndex = k === at ? 0 : -1;
       panels[k].hidden = k !== at;
     });
+    tabs[at].scrollIntoView({ block: 'nearest', inline: 'nearest' });
     /** @type {any} */ (steps[at][1]).shown?.();
     chosen(steps[at][0]);
   };

@@ -13,9 +13,14 @@ export function taskLine(live) {
   const messages = h('ul', { class: 'messages', 'aria-live': 'polite' });
   const element = h('div', { class: 'task' }, h('div', { class: 'task-line' }, stop, bar, said), messages);
 
-  /** @param {string[]} args @param {string} doing @returns {Promise<import('./program.js').Outcome>} */
-  const run = async (args, doing) => {
+  /**
+   * @param {string[]} args @param {string} doing
+   * @param {{extra?: [string, Uint8Array][], keep?: boolean}} [files] extra: for this call alone; keep: what it writes stays in the project
+   * @returns {Promise<import('./program.js').Outcome>}
+   */
+  const run = async (args, doing, { extra = [], keep = true } = {}) => {
     const { project } = live;
+    const { text } = project;
     const start = performance.now();
     const seconds = () => Math.round((performance.now() - start) / 1000);
     live.planning = true;
@@ -28,7 +33,7 @@ export function taskLine(live) {
     tell();
     const outcome = await live.work.run({
       args,
-      files: project.files,
+      files: new Map([...project.files, ...extra]),
       folder: project.folder,
       onLine: (line) => {
         const progress = progressOf(line);
@@ -43,7 +48,7 @@ export function taskLine(live) {
     live.planning = false;
     stop.hidden = bar.hidden = true;
     said.textContent = outcome.code === 130 ? 'Stopped.' : '';
-    project.add(outcome.files);
+    if (keep) project.add(outcome.files, text);
     const found = messagesOf(outcome.err, project.problem);
     if (outcome.code !== 0) live.editor.show(found.filter((m) => m.line > 0));
     messages.replaceChildren(...found.map((m) => h('li', { class: m.kind }, m.line > 0 ? `${nameOf(project.problem)}, line ${m.line}: ` : '', m.text)));

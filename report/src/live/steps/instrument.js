@@ -19,8 +19,8 @@ export function instrumentStep(live) {
     if (!lens.hidden && camera.childElementCount === 0) fillCameras();
   };
   const fillCameras = async () => {
-    const { out } = await live.work.run({ args: ['init', '--camera', 'list', '--json'], files: new Map() });
-    camera.replaceChildren(...JSON.parse(out).cameras.map((c) => h('option', { value: c.name }, `${c.name} (${c.width} × ${c.height})`)));
+    const { cameras } = (await live.list(['init', '--camera', 'list'])) ?? { cameras: [] };
+    camera.replaceChildren(...cameras.map((c) => h('option', { value: c.name }, `${c.name} (${c.width} × ${c.height})`)));
   };
   const words = () => [
     ...(kind.value === 'tracker' ? ['--tracker'] : ['--camera', camera.value, '--board', board.value.trim()]),
@@ -33,7 +33,7 @@ export function instrumentStep(live) {
     {},
     h('div', { class: 'fields' }, h('label', {}, 'Instrument ', kind), h('label', {}, 'Required accuracy ', accuracy)),
     lens,
-    h('button', { class: 'main', onclick: () => live.begin(live.project.files) }, 'Write the problem anew'),
+    h('button', { class: 'main', onclick: () => live.begin(live.project.given) }, 'Write the problem anew'),
     h('p', { class: 'note' }, 'This replaces the problem file; "Undo" at the text brings the old one back. Drag the instrument in the picture, or type where it stands:'),
     thingsPanel(live.project, 'instrument'),
   );

@@ -11,38 +11,38 @@ export function measuredStep(live) {
   const encoder = new TextEncoder();
   const problem = () => nameOf(project.problem);
   const inFolder = (name) => joined(project.folder, name);
-  let data = '';
+  /** Readings: their name and bytes. */
+  let data = /** @type {[string, Uint8Array]|undefined} */ (undefined);
+  const readings = () => ({ extra: /** @type {[string, Uint8Array][]} */ ([[inFolder(data[0]), data[1]]]) });
 
   /** A result as a page. @param {string} name of its files @param {string} title @param {string} out JSON */
   const showResult = async (name, title, out) => {
-    project.add([[inFolder(`${name}.json`), encoder.encode(out)]]);
-    const { code } = await task.run(['report', `${name}.json`, '-o', `${name}.html`, '--force', '--quiet'], 'The report');
+    const { code } = await task.run(['report', `${name}.json`, '-o', `${name}.html`, '--force', '--quiet'], 'The report', { extra: [[inFolder(`${name}.json`), encoder.encode(out)]] });
     if (code === 0) live.result.show(title, project.read(inFolder(`${name}.html`)));
   };
   const calibrate = async (files) => {
     if (project.text === '') return live.complain('Readings need their problem file: choose the robot or drop the problem first.');
     const csv = [...files.keys()].find((path) => /\.csv$/i.test(path));
     if (!csv) return live.complain('Readings are a CSV file: a row a pose, columns of joints and readings as in poses.csv.');
-    data = nameOf(csv);
-    project.add([[inFolder(data), files.get(csv)]]);
-    const { code, out } = await task.run(['calibrate', problem(), data, '-o', 'calibrated.yaml', '--force', '--json'], 'Calibrating');
+    data = [nameOf(csv), files.get(csv)];
+    const { code, out } = await task.run(['calibrate', problem(), data[0], '-o', 'calibrated.yaml', '--force', '--json'], 'Calibrating', readings());
     if (out.startsWith('{')) await showResult('calibration', 'Calibration', out);
     for (const button of then) button.disabled = code !== 0;
   };
   const next = async () => {
-    const { code, out } = await task.run(['next', problem(), '--data', data, '--poses', '5', '--state', '-', '-o', 'next.csv', '--force', '--json'], 'Choosing the next poses');
+    const { code, out } = await task.run(['next', problem(), '--data', data[0], '--poses', '5', '--state', '-', '-o', 'next.csv', '--force', '--json'], 'Choosing the next poses', readings());
     if (code === 0) await showResult('next', 'Next poses', out);
   };
   const urdf = async () => {
-    const { code, files } = await task.run(['calibrate', problem(), data, '--urdf', 'corrected.urdf', '-o', '-', '--force', '--quiet'], 'Writing the URDF');
+    const { code, files } = await task.run(['calibrate', problem(), data[0], '--urdf', 'corrected.urdf', '-o', '-', '--force', '--quiet'], 'Writing the URDF', { ...readings(), keep: false });
     if (code === 0) for (const [path, bytes] of files) saveFile(path, bytes);
   };
   const compensate = async (files) => {
-    if (!project.files.has(inFolder('calibrated.yaml'))) return live.complain('Programs are compensated by a calibration: drop measured data first.');
-    project.add([...files].map(([path, bytes]) => [inFolder(nameOf(path)), bytes]));
+    if (!project.current(inFolder('calibrated.yaml'))) return live.complain('Programs are compensated by a calibration of this problem: drop measured data first.');
+    const extra = [...files].map(([path, bytes]) => /** @type {[string, Uint8Array]} */ ([inFolder(nameOf(path)), bytes]));
     const names = [...files.keys()].map(nameOf);
     const to = names.length > 1 ? 'corrected' : `corrected-${names[0]}`;
-    const { code, files: written } = await task.run(['compensate', 'calibrated.yaml', ...names, '-o', to, '--force'], 'Compensating');
+    const { code, files: written } = await task.run(['compensate', 'calibrated.yaml', ...names, '-o', to, '--force'], 'Compensating', { extra, keep: false });
     if (code === 0) for (const [path, bytes] of written) saveFile(path, bytes);
   };
   const then = [

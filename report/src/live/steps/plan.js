@@ -34,6 +34,7 @@ export function planStep(live) {
   const task = taskLine(live);
   const go = h('button', { class: 'main' }, 'Plan');
   const inFolder = (name) => joined(project.folder, name);
+  const planFile = () => inFolder('plan.json');
 
   project.addEventListener('text', () => {
     const written = documentOf(project.text)?.getIn(['design', 'poses']);
@@ -48,17 +49,18 @@ export function planStep(live) {
     if (go.disabled || element.closest('[hidden]')) return;
     note.textContent = 'A quick look at the error to expect…';
     const { text } = project;
-    const args = ['plan', nameOf(project.problem), ...quickly, '-o', 'quick.json', '--poses-csv', '-', '--force', '--quiet'];
+    const args = ['plan', nameOf(project.problem), ...quickly, '-o', 'quick.json', '--poses-csv', 'quick.csv', '--force', '--quiet'];
     const { code, files, err } = await live.look.run({ args, files: project.files, folder: project.folder });
     if (project.text !== text || code === 130) return;
     const bytes = files.get(inFolder('quick.json'));
     note.textContent = bytes ? 'From a quick look; Plan searches on.' : (err.at(-1) ?? '');
     if (!bytes) return;
-    live.quick = { text, bytes };
+    live.quick = { text, bytes, poses: files.get(inFolder('quick.csv')) };
     expected.textContent = errorText(JSON.parse(new TextDecoder().decode(bytes)));
   };
 
   const showReport = async () => {
+    expected.textContent = errorText(JSON.parse(project.read(planFile())));
     const done = await task.run(['report', 'plan.json', '--brief', '-o', 'report.html', '--force', '--quiet'], 'The report');
     const page = project.read(inFolder('report.html'));
     if (done.code === 0 && page) live.result.show('Plan', page);
@@ -67,7 +69,8 @@ export function planStep(live) {
   /** The plan of the quick look takes the place of one that was stopped. */
   const keepQuick = () => {
     if (live.quick?.text !== project.text) return false;
-    project.add([[inFolder('plan.json'), live.quick.bytes]]);
+    const { text, bytes, poses } = live.quick;
+    project.add([[inFolder('plan.json'), bytes], [inFolder('poses.csv'), poses]], text);
     return true;
   };
 
@@ -78,13 +81,14 @@ export function planStep(live) {
     note.textContent = '';
     const args = ['plan', nameOf(project.problem), '--time-limit', time.input.value, '-o', 'plan.json', '--poses-csv', 'poses.csv', '--force', '--verbose'];
     const { code } = await task.run(args, 'Planning');
-    const stopped = code === 130 && !project.files.has(inFolder('plan.json'));
-    if (code === 0 || (code === 130 && (keepQuick() || !stopped))) {
-      expected.textContent = errorText(JSON.parse(project.read(inFolder('plan.json'))));
+    const advice = 'The slider of time ends a search with its best plan so far.';
+    if (code === 0 && !project.current(planFile())) task.say('The problem has changed during the search: plan again.');
+    else if (code === 0) await showReport();
+    else if (code === 130 && project.current(planFile())) task.say(`Stopped: the plan from before stays. ${advice}`);
+    else if (code === 130 && keepQuick()) {
       await showReport();
-      if (code === 130) task.say('Stopped: this is the plan of the quick look. The slider of time ends a search with its best plan so far.');
-      live.planned?.();
-    } else if (code === 130) task.say('Stopped before there was a plan. The slider of time ends a search with its best plan so far.');
+      task.say(`Stopped: this is the plan of the quick look. ${advice}`);
+    } else if (code === 130) task.say(`Stopped before there was a plan. ${advice}`);
     go.disabled = false;
   });
 

@@ -1,7 +1,7 @@
 import { h } from '../../dom.js';
 import { dropZone } from '../dropped.js';
 import { nameOf } from '../project.js';
-import { placeMeshes, robotAmong } from '../robot_files.js';
+import { hasMesh, placeMeshes, robotAmong } from '../robot_files.js';
 
 /**
  * @param {import('../main.js').Live} live
@@ -11,17 +11,21 @@ export function robotStep(live, examples) {
   const say = h('p', { class: 'note', role: 'status' });
   const take = async (files) => {
     const problem = [...files.keys()].find((path) => /(^|\/)problem\.ya?ml$/.test(path));
-    const all = new Map([...live.project.files, ...files]);
-    const robot = robotAmong(files) ?? (live.robot && all.has(live.robot) ? live.robot : undefined);
-    if (problem) return live.project.open(all, problem);
-    if (!robot) return live.complain('Among these files is no robot: a URDF (or the output of xacro) has <robot> at its beginning.');
+    const all = new Map([...live.project.given, ...files]);
+    if (problem) {
+      live.complain('');
+      say.textContent = `${problem} is read.`;
+      return live.project.open(all, problem);
+    }
+    const robot = robotAmong(files) ?? (hasMesh(files) ? live.robotOf() : undefined);
+    if (!robot || !all.has(robot)) return live.complain('Among these files is no robot: a URDF (or the output of xacro) has <robot> at its beginning.');
     const missing = placeMeshes(all, robot);
-    live.robot = robot;
-    say.textContent =
-      missing.length > 0
+    const read = await live.begin(all, robot);
+    say.textContent = !read
+      ? ''
+      : missing.length > 0
         ? `${robot}: ${missing.length} of its meshes are missing (${missing.slice(0, 3).map(nameOf).join(', ')}${missing.length > 3 ? ', …' : ''}); drop them or their folder here. The notes tell what is left out without them.`
         : `${robot} is read.`;
-    await live.begin(all);
   };
   const example = h(
     'select',
@@ -33,6 +37,7 @@ export function robotStep(live, examples) {
         const encoder = new TextEncoder();
         const files = new Map(Object.entries(chosen.files).map(([path, text]) => [path, encoder.encode(text)]));
         say.textContent = '';
+        live.complain('');
         if (chosen.problem) return live.project.open(files, chosen.problem);
         return take(files);
       },

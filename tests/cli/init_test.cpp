@@ -376,8 +376,8 @@ TEST(Init, MakesAProblemOfSamplesThatCalibratesPlansAndGoesOn) {
   ASSERT_EQ(proposed.size(), 3U);
   EXPECT_EQ(proposed[0]["names"],
             (nlohmann::json{"robot.x", "robot.y", "robot.z", "robot.roll", "robot.pitch", "robot.yaw"}));
-  EXPECT_EQ(proposed,
-            nlohmann::json::parse(result({"next", "problem.yaml", "--data", samples, "-k", "3", "--json"}))["poses"]);
+  EXPECT_EQ(proposed, nlohmann::json::parse(result(
+                          {"next", "problem.yaml", "--data", samples, "--state", "-", "-k", "3", "--json"}))["poses"]);
   // make_samples.py says where the camera is.
   const auto frames = nlohmann::json::parse(short_way)["frames"];
   EXPECT_EQ(frames[1]["name"], "tool");
@@ -390,7 +390,7 @@ TEST(Init, MakesAProblemOfSamplesThatCalibratesPlansAndGoesOn) {
   EXPECT_EQ(frames[2]["in"], "base");
   EXPECT_THAT(result({"plan", "problem.yaml", "--poses", "6"}), HasSubstr("6 parameters and 6 nuisance parameters"));
   result({"evaluate", "problem.yaml", "poses.csv"});
-  EXPECT_THAT(result({"next", "problem.yaml", "--data", samples}), HasSubstr("robot.roll [deg]"));
+  EXPECT_THAT(result({"next", "problem.yaml", "--data", samples, "--state", "-"}), HasSubstr("robot.roll [deg]"));
   const ProgramRun refused = run_program(folder.path(), {"export", "plan.json", "--to", "moveit"});
   EXPECT_EQ(refused.exit_code, 1);
   EXPECT_THAT(refused.err, HasSubstr("moveit is for robots with joints"));

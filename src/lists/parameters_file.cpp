@@ -40,6 +40,18 @@ std::string yaml_text(const std::string& text) {
   return quoted + "\"";
 }
 
+/// Calls `read` with a key of a plan's problem; not for a file that has none.
+template <class Read>
+void read_of_problem(const std::filesystem::path& plan, const std::string& name, const Read& read) {
+  try {
+    const auto json = parse_json(read_text(plan, plan_size_limit));
+    const nlohmann::json::json_pointer key("/problem/" + name);
+    if (json.is_object() && json.contains(key)) read(json.at(key));
+  } catch (const nlohmann::json::exception&) {
+    // Another file: a list of poses, JSON of something else.
+  }
+}
+
 }  // namespace
 
 ParametersFile parameters_of(const Problem& problem) {
@@ -47,34 +59,25 @@ ParametersFile parameters_of(const Problem& problem) {
   return {problem.parameters->file.string(), problem.parameters->sha256, problem.parameters->variant.value};
 }
 
-KeyEdits edits_of_plan(const std::filesystem::path& plan) {
-  KeyEdits edits;
-  try {
-    const auto json = parse_json(read_text(plan, plan_size_limit));
-    const nlohmann::json::json_pointer key("/problem/set");
-    if (!json.is_object() || !json.contains(key)) return {};
-    for (const auto& edit : json.at(key))
-      edits.push_back({edit.at("key").get<std::string>(), edit.at("value").get<std::string>()});
-  } catch (const nlohmann::json::exception&) {
-    return {};
-  }
-  return edits;
-}
-
 ParametersFile parameters_of_plan(const std::filesystem::path& plan) {
   ParametersFile stated;
-  try {
-    const auto json = parse_json(read_text(plan, plan_size_limit));
-    const nlohmann::json::json_pointer key("/problem/parameters");
-    if (!json.is_object() || !json.contains(key)) return {};
-    const auto& parameters = json.at(key);
-    stated = {parameters.at("file").get<std::string>(), parameters.at("sha256").get<std::string>(),
-              parameters.at("variant").get<std::string>()};
-  } catch (const nlohmann::json::exception&) {
-    return {};
-  }
-  stated.file = find_near(stated.file, plan).string();
+  read_of_problem(plan, "parameters", [&](const nlohmann::json& parameters) {
+    const ParametersFile named = {parameters.at("file").get<std::string>(), parameters.at("sha256").get<std::string>(),
+                                  parameters.at("variant").get<std::string>()};
+    stated = {find_near(named.file, plan).string(), named.sha256, named.variant};
+  });
   return stated;
+}
+
+KeyEdits edits_of_plan(const std::filesystem::path& plan) {
+  KeyEdits edits;
+  read_of_problem(plan, "set", [&](const nlohmann::json& stated) {
+    KeyEdits all;
+    for (const auto& edit : stated)
+      all.push_back({edit.at("key").get<std::string>(), edit.at("value").get<std::string>()});
+    edits = std::move(all);
+  });
+  return edits;
 }
 
 std::string parameters_note(const std::string& name, const ParametersFile& made_at, const ParametersFile& now) {

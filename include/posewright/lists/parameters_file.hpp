@@ -21,9 +21,9 @@ ParametersFile parameters_of(const Problem& problem);
 /// Parameters of a plan, route or evaluation; the file as found from here or from
 /// the plan's folder. Empty if it states none or is no such file.
 /// Throws InputError if the file is not there.
-/// Keys that a plan or route was made with in place of the file's (Problem::changed); empty: it says none.
-KeyEdits edits_of_plan(const std::filesystem::path& plan);
 ParametersFile parameters_of_plan(const std::filesystem::path& plan);
+/// Keys that a plan or route was made with in place of the file's (Problem::changed); empty: it states none.
+KeyEdits edits_of_plan(const std::filesystem::path& plan);
 
 /// Note for the user if the plan `name` was made at other parameters than the problem's; else empty.
 std::string parameters_note(const std::string& name, const ParametersFile& made_at, const ParametersFile& now);

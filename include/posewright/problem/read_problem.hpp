@@ -9,10 +9,9 @@ namespace posewright {
 
 /// Reads a problem file (YAML, at most 10 MB). Throws InputError with the line of the first thing that is wrong.
 /// @param packages  folders of packages that the user names: become Problem::packages
-/// @param changed   keys with other values than in the file, in this order: a later one may lie in an earlier one. A
-/// list's
-///                  entries are 1, 2, …; files in values are relative to the problem's folder, as in the file. Messages
-///                  name them "--set KEY".
+/// @param changed   keys with other values than in the file, in this order: a later one may lie in an earlier one.
+///                  Entries of a list are 1, 2, …; paths in values are relative to the working directory. Messages name
+///                  "--set"
 Problem read_problem(const std::filesystem::path& file, const Packages& packages = {}, const KeyEdits& changed = {});
 
 /// Overload for text in memory; `file` names it in messages, and paths in it are relative to its folder.

@@ -9,6 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "posewright/problem/read_problem.hpp"
+#include "posewright/support/file.hpp"
+#include "posewright/support/json.hpp"
 #include "src/cell/obstacle_files.hpp"
 #include "tests/kit/mutate.hpp"
 #include "tests/kit/temporary_folder.hpp"
@@ -72,7 +74,7 @@ Described described(const ShapeSpec& shape) {
 }
 
 TEST(SdfWorld, ShapesAndPosesAreThoseOfLibsdformat) {
-  const json golden = json::parse(std::ifstream(worlds / "golden.json"));
+  const json golden = parse_json(read_file(worlds / "golden.json"));
   ASSERT_EQ(golden.size(), 10U);
   for (const auto& [file, expected] : golden.items()) {
     const std::vector<PlacedShape> shapes =

@@ -8,6 +8,7 @@
 #include "posewright/lists/measured_data.hpp"
 #include "posewright/model/model_factory.hpp"
 #include "posewright/problem/read_problem.hpp"
+#include "posewright/support/json.hpp"
 #include "tests/kit/run_program.hpp"
 #include "tests/kit/temporary_folder.hpp"
 #include "tests/kit/virtual_data.hpp"
@@ -59,7 +60,7 @@ TEST_F(CalibrateCommand, RobustNamesThePosesThatLostWeight) {
 TEST_F(CalibrateCommand, JsonHasEveryPoseAndTheCovariance) {
   const ProgramRun shown = run({"--weights", "ols", "--json"});
   ASSERT_EQ(shown.exit_code, 0) << shown.err;
-  const auto json = nlohmann::json::parse(shown.out);
+  const auto json = parse_json(shown.out);
   EXPECT_EQ(json["schema"], "posewright/calibration/1");
   EXPECT_EQ(json["poses"].size(), 40U);
   EXPECT_EQ(json["covariance"]["rows"].size(), 33U);
@@ -84,7 +85,7 @@ TEST_F(CalibrateCommand, GivesTheRobotToItsUsers) {
   const ProgramRun again =
       run({"--parameters", "calibrated.yaml", "--json", "--dh", "proximal", "--force", "--no-prior"});
   ASSERT_EQ(again.exit_code, 0) << again.err;
-  const auto json = nlohmann::json::parse(again.out);
+  const auto json = parse_json(again.out);
   for (const auto& p : json["parameters"])
     EXPECT_NEAR(p["value"].get<double>(), p["nominal"].get<double>(), 0.01 * p["sigma"].get<double>()) << p["name"];
   EXPECT_EQ(json["denavit_hartenberg"]["rows"].size(), 6U);

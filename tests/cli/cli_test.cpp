@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "posewright/support/file.hpp"
+#include "posewright/support/json.hpp"
 #include "tests/kit/random_blocks.hpp"
 #include "tests/kit/recompute.hpp"
 #include "tests/kit/run_program.hpp"
@@ -51,7 +52,7 @@ TEST(CommandLine, PlanWritesBothFilesAndASummary) {
   EXPECT_THAT(run.out, HasSubstr("as informative as any plan of 40 of these"));
   EXPECT_THAT(run.out, HasSubstr("boundary of the feasible set"));
   EXPECT_EQ(run.err, "") << "no progress where stderr is not a terminal";
-  const auto json = nlohmann::json::parse(read_file(folder / "p.json"));
+  const auto json = parse_json(read_file(folder / "p.json"));
   EXPECT_EQ(json["schema"], "posewright/plan/1");
   EXPECT_EQ(json["problem"]["sha256"].get<std::string>().size(), 64U);
   EXPECT_EQ(json["poses"].size(), 40U);
@@ -67,10 +68,10 @@ TEST(CommandLine, JsonIsAloneOnStandardOutput) {
   const TemporaryFolder folder;
   const ProgramRun plan = run_program(folder.path(), {"plan", telescope, "--candidates", "200", "--method", "exchange",
                                                       "--json", "-o", "-", "--poses-csv", "-"});
-  EXPECT_EQ(nlohmann::json::parse(plan.out)["poses"].size(), 40U);
+  EXPECT_EQ(parse_json(plan.out)["poses"].size(), 40U);
   EXPECT_EQ(folder.count_files(), 0U);
   const ProgramRun observe = run_program(folder.path(), {"observe", telescope, "--candidates", "300", "--json"});
-  const auto json = nlohmann::json::parse(observe.out);
+  const auto json = parse_json(observe.out);
   EXPECT_EQ(json["variants"].size(), 8U);
   EXPECT_EQ(json["variants"][0]["rank"], 42);
 }
@@ -190,7 +191,7 @@ TEST(CommandLine, AFolderWhoseNameIsNotUtf8HasItsPlan) {
   const std::string problem = (latin / "p.yaml").string();
   const ProgramRun run = run_program(latin, {"plan", problem, "--candidates", "100", "--method", "greedy", "--json"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  const auto json = nlohmann::json::parse(run.out);
+  const auto json = parse_json(run.out);
   EXPECT_THAT(json["problem"]["file"].get<std::string>(), HasSubstr("caf\xef\xbf\xbd/p.yaml"));
   EXPECT_EQ(run_program(latin, {"report", "plan.json", "--problem", "p.yaml"}).exit_code, 0);
 }
@@ -233,7 +234,7 @@ TEST(CommandLine, SelectChoosesBlocksWithoutRobots) {
   folder.write("b.csv", csv_blocks(60, 2, 5));
   const ProgramRun run = run_program(folder.path(), {"select", "b.csv", "--rows", "2", "--poses", "7", "--json"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  const auto json = nlohmann::json::parse(run.out);
+  const auto json = parse_json(run.out);
   EXPECT_EQ(json["poses"].size(), 7U);
   EXPECT_FALSE(json.contains("variant"));
   EXPECT_FALSE(json["poses"][0].contains("configuration"));

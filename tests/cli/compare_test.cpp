@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "posewright/support/file.hpp"
+#include "posewright/support/json.hpp"
 #include "tests/kit/run_program.hpp"
 #include "tests/kit/temporary_folder.hpp"
 
@@ -49,7 +50,7 @@ TEST(CompareCommand, TruthShowsEveryParameterAndPlansThatAreGivenAreJudged) {
   EXPECT_THAT(run.out, HasSubstr("leg_6.l"));
   std::vector<std::string> machine = words;
   machine.emplace_back("--json");
-  const auto json = nlohmann::json::parse(run_program(folder.path(), machine).out);
+  const auto json = parse_json(run_program(folder.path(), machine).out);
   EXPECT_EQ(json["schema"], "posewright/comparison/1");
   ASSERT_EQ(json["scores"].size(), 4U);
   EXPECT_EQ(json["scores"][0]["log_det"], json["scores"][2]["log_det"]) << "one list in two files";

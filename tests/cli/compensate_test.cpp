@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "posewright/support/file.hpp"
+#include "posewright/support/json.hpp"
 #include "posewright/support/sha256.hpp"
 #include "tests/kit/run_program.hpp"
 #include "tests/kit/temporary_folder.hpp"
@@ -59,7 +60,7 @@ TEST_F(CompensateCommand, WritesTheListWithOtherJointsAndSaysWhatItIsWorth) {
 
   const ProgramRun written = run({"cal.yaml", "list.csv", "-o", "out.csv", "--json"});
   ASSERT_EQ(written.exit_code, 0) << written.err;
-  const json result = json::parse(written.out);
+  const json result = parse_json(written.out);
   EXPECT_EQ(result["written"], json({"out.csv"}));
   EXPECT_GT(result["error"]["before"]["position_largest"], 1e-4);
   EXPECT_LT(result["error"]["after"]["position_largest"], 1e-9);

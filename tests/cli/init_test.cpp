@@ -18,6 +18,7 @@
 
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/support/file.hpp"
+#include "posewright/support/json.hpp"
 #include "posewright/tasks/known_cameras.hpp"
 #include "tests/kit/run_program.hpp"
 #include "tests/kit/temporary_folder.hpp"
@@ -372,14 +373,15 @@ TEST(Init, MakesAProblemOfSamplesThatCalibratesPlansAndGoesOn) {
   const std::string short_way = result({"calibrate", "--samples", samples, "--json"});
   EXPECT_EQ(result({"calibrate", "problem.yaml", samples, "--weights", "robust", "--json"}).substr(0, 40),
             short_way.substr(0, 40));
-  const auto proposed = nlohmann::json::parse(short_way)["next"];
+  const auto proposed = parse_json(short_way)["next"];
   ASSERT_EQ(proposed.size(), 3U);
   EXPECT_EQ(proposed[0]["names"],
             (nlohmann::json{"robot.x", "robot.y", "robot.z", "robot.roll", "robot.pitch", "robot.yaw"}));
-  EXPECT_EQ(proposed, nlohmann::json::parse(result(
-                          {"next", "problem.yaml", "--data", samples, "--state", "-", "-k", "3", "--json"}))["poses"]);
+  EXPECT_EQ(
+      proposed,
+      parse_json(result({"next", "problem.yaml", "--data", samples, "--state", "-", "-k", "3", "--json"}))["poses"]);
   // make_samples.py says where the camera is.
-  const auto frames = nlohmann::json::parse(short_way)["frames"];
+  const auto frames = parse_json(short_way)["frames"];
   EXPECT_EQ(frames[1]["name"], "tool");
   const std::array<double, 3> camera{0.062, -0.018, 0.085}, board{0.61, 0.08, 0.004};
   for (std::size_t k = 0; k < 3; ++k) {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "posewright/support/file.hpp"
+#include "posewright/support/json.hpp"
 #include "tests/kit/run_program.hpp"
 #include "tests/kit/temporary_folder.hpp"
 
@@ -37,7 +38,7 @@ TEST(ParametersOption, PlanStatesThemAndRouteAndReportFindThem) {
   const ProgramRun plan = run_program(folder.path(), plan_words({"--parameters", "cal.yaml"}));
   ASSERT_EQ(plan.exit_code, 0) << plan.err;
   EXPECT_THAT(plan.out, HasSubstr("At the calibrated parameters of cal.yaml."));
-  const json stated = json::parse(read_file(folder / "plan.json"))["problem"]["parameters"];
+  const json stated = parse_json(read_file(folder / "plan.json"))["problem"]["parameters"];
   EXPECT_EQ(stated["file"], "cal.yaml");
   EXPECT_EQ(stated["variant"], "links_and_offsets");
 
@@ -46,7 +47,7 @@ TEST(ParametersOption, PlanStatesThemAndRouteAndReportFindThem) {
   EXPECT_THAT(report.out, testing::Not(HasSubstr("plan was made")));
   const ProgramRun route = run_program(folder.path(), {"route", "plan.json", "--json"});
   ASSERT_EQ(route.exit_code, 0) << route.err;
-  EXPECT_EQ(json::parse(route.out)["problem"]["parameters"]["sha256"], stated["sha256"]);
+  EXPECT_EQ(parse_json(route.out)["problem"]["parameters"]["sha256"], stated["sha256"]);
 
   const ProgramRun evaluation = run_program(folder.path(), {"evaluate", "p.yaml", "plan.json", "--candidates", "200"});
   EXPECT_EQ(evaluation.exit_code, 0);
@@ -83,7 +84,7 @@ TEST(ParametersOption, ObservationAndComparisonStateThem) {
     all.insert(all.end(), {"--parameters", "cal.yaml", "--json"});
     const ProgramRun run = run_program(folder.path(), all);
     ASSERT_EQ(run.exit_code, 0) << run.err;
-    EXPECT_EQ(json::parse(run.out)["problem"]["parameters"]["file"], "cal.yaml");
+    EXPECT_EQ(parse_json(run.out)["problem"]["parameters"]["file"], "cal.yaml");
   }
 }
 
@@ -115,21 +116,21 @@ TEST(SetOption, PlanStatesAnyKeyAndLaterCommandsFindIt) {
   folder.write("edited.yaml", text);
   const ProgramRun plan = run_program(folder.path(), plan_words({"--set", key + "=" + value}));
   ASSERT_EQ(plan.exit_code, 0) << plan.err;
-  const json stated = json::parse(read_file(folder / "plan.json"));
+  const json stated = parse_json(read_file(folder / "plan.json"));
   EXPECT_EQ(stated["problem"]["set"], (json{{{"key", key}, {"value", value}}}));
   std::vector<std::string> words = plan_words({"--json", "-o", "-"});
   words[1] = "edited.yaml";
   const ProgramRun edited = run_program(folder.path(), words);
   ASSERT_EQ(edited.exit_code, 0) << edited.err;
-  EXPECT_EQ(json::parse(edited.out)["criterion"]["log_det"], stated["criterion"]["log_det"]);
+  EXPECT_EQ(parse_json(edited.out)["criterion"]["log_det"], stated["criterion"]["log_det"]);
 
   const ProgramRun report = run_program(folder.path(), {"report", "plan.json", "--brief"});
   EXPECT_EQ(report.exit_code, 0) << report.err;
   EXPECT_THAT(report.err, testing::Not(HasSubstr("another")));
   const ProgramRun route = run_program(folder.path(), {"route", "plan.json", "--json"});
   ASSERT_EQ(route.exit_code, 0) << route.err;
-  EXPECT_EQ(json::parse(route.out)["problem"]["set"], stated["problem"]["set"]);
-  EXPECT_EQ(json::parse(route.out)["problem"]["sha256"], stated["problem"]["sha256"]);
+  EXPECT_EQ(parse_json(route.out)["problem"]["set"], stated["problem"]["set"]);
+  EXPECT_EQ(parse_json(route.out)["problem"]["sha256"], stated["problem"]["sha256"]);
 
   const ProgramRun wrong = run_program(folder.path(), plan_words({"--set", key + "=fast"}));
   EXPECT_EQ(wrong.exit_code, 2);

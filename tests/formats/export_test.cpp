@@ -8,6 +8,7 @@
 
 #include "posewright/formats/pose_formats.hpp"
 #include "posewright/support/file.hpp"
+#include "posewright/support/json.hpp"
 #include "tests/kit/run_program.hpp"
 #include "tests/kit/temporary_folder.hpp"
 
@@ -27,7 +28,7 @@ TEST(ExportCommand, ListsItsFormats) {
   EXPECT_EQ(bare.exit_code, 0);
   EXPECT_EQ(bare.out, run_program(folder.path(), {"export", "--to", "list"}).out);
   EXPECT_THAT(bare.out, HasSubstr("* syntax checked, not run on a controller"));
-  const auto json = nlohmann::json::parse(run_program(folder.path(), {"export", "--json"}).out);
+  const auto json = parse_json(run_program(folder.path(), {"export", "--json"}).out);
   EXPECT_EQ(json["formats"].size(), pose_formats().size());
   for (const PoseFormat& format : pose_formats()) EXPECT_THAT(bare.out, HasSubstr("\n  " + format.name));
 }
@@ -44,9 +45,9 @@ TEST(ExportCommand, WritesOneFileToStandardOutputAndNotesToStandardError) {
 
 TEST(ExportCommand, TellsFilesAndNotesAsJson) {
   const TemporaryFolder folder;
-  const auto json = nlohmann::json::parse(run_program(folder.path(), {"export", plan, "--to", "kuka-krl", "-o", "out/",
-                                                                      "--name", "CELL3", "--json", "--unchecked"})
-                                              .out);
+  const auto json = parse_json(run_program(folder.path(), {"export", plan, "--to", "kuka-krl", "-o", "out/", "--name",
+                                                           "CELL3", "--json", "--unchecked"})
+                                   .out);
   EXPECT_EQ(json["poses"], 3);
   EXPECT_EQ(json["files"], (std::vector<std::string>{"out/CELL3.src", "out/CELL3.dat"}));
   EXPECT_TRUE(fs::exists(folder / "out/CELL3.dat"));
@@ -159,7 +160,7 @@ TEST(ExportCommand, EveryMistakeGivesTheRightCodeAndNoFile) {
 
 double log_det(const ProgramRun& run) {
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  return run.exit_code == 0 ? nlohmann::json::parse(run.out)["criterion"]["log_det"].get<double>() : 0;
+  return run.exit_code == 0 ? parse_json(run.out)["criterion"]["log_det"].get<double>() : 0;
 }
 
 /// A plan of a real arm, once for all tests.
@@ -202,11 +203,11 @@ TEST(PosesBack, EveryReadableFormatScoresAsThePlan) {
 TEST(PosesBack, ARouteIsAPoseListAndListsAreRouted) {
   const fs::path& folder = arm_folder();
   ASSERT_EQ(run_program(folder, {"route", "p.json", "--start", "3", "-o", "r.json"}).exit_code, 0);
-  const auto first = nlohmann::json::parse(read_file(folder / "r.json"));
+  const auto first = parse_json(read_file(folder / "r.json"));
   // The route's own poses keep their ids.
   const ProgramRun again = run_program(folder, {"route", "r.json", "--start", "3", "-o", "again.json"});
   ASSERT_EQ(again.exit_code, 0) << again.err;
-  const auto second = nlohmann::json::parse(read_file(folder / "again.json"));
+  const auto second = parse_json(read_file(folder / "again.json"));
   EXPECT_EQ(second["order"][0], 3);
   for (const auto& pose : second["poses"])
     for (const auto& other : first["poses"]) {
@@ -219,7 +220,7 @@ TEST(PosesBack, ARouteIsAPoseListAndListsAreRouted) {
   const ProgramRun listed =
       run_program(folder, {"route", "m.yaml", "--from", "moveit", "--problem", kr270, "-o", "l.json"});
   ASSERT_EQ(listed.exit_code, 0) << listed.err;
-  EXPECT_EQ(nlohmann::json::parse(read_file(folder / "l.json"))["order"].size(), 8U);
+  EXPECT_EQ(parse_json(read_file(folder / "l.json"))["order"].size(), 8U);
   // And a program of it measures every pose.
   ASSERT_EQ(run_program(folder, {"export", "l.json", "--to", "kuka-krl", "-o", "LIST.src"}).exit_code, 0);
   const std::string source = read_file(folder / "LIST.src");

@@ -7,6 +7,7 @@
 
 #include "posewright/model/model_factory.hpp"
 #include "posewright/model/variant_columns.hpp"
+#include "posewright/support/json.hpp"
 
 namespace posewright {
 
@@ -51,7 +52,7 @@ std::vector<std::vector<double>> configurations_of(const Problem& problem, const
 }
 
 PlanFile read_back(const std::string& text) {
-  const auto json = nlohmann::json::parse(text);
+  const auto json = parse_json(text);
   PlanFile plan;
   plan.variant = json.value("variant", "");
   plan.log_det = json.at("criterion").at("log_det");

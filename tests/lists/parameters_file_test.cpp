@@ -14,6 +14,7 @@
 #include "posewright/report/report_problem.hpp"
 #include "posewright/results/plan.hpp"
 #include "posewright/support/file.hpp"
+#include "posewright/support/json.hpp"
 #include "posewright/support/random.hpp"
 #include "posewright/tasks/evaluate_problem.hpp"
 #include "posewright/tasks/plan_problem.hpp"
@@ -102,10 +103,10 @@ TEST_F(PlannedAtParameters, PlanStatesFileAndHashAndLaterStepsFindIt) {
   const Plan plan = quick_plan(calibrated);
   const Plan before = quick_plan(nominal);
   EXPECT_NE(plan.log_det, before.log_det);
-  const json stated = json::parse(plan_json(plan))["problem"]["parameters"];
+  const json stated = parse_json(plan_json(plan))["problem"]["parameters"];
   EXPECT_EQ(stated["file"], file.string());
   EXPECT_EQ(stated["sha256"], calibrated.parameters->sha256);
-  EXPECT_FALSE(json::parse(plan_json(before))["problem"].contains("parameters"));
+  EXPECT_FALSE(parse_json(plan_json(before))["problem"].contains("parameters"));
 
   const auto plan_file = folder.write("plan.json", plan_json(plan));
   EXPECT_EQ(parameters_of_plan(plan_file).file, file.string());
@@ -145,7 +146,7 @@ TEST_F(PlannedAtParameters, RouteStatesThemAndNotesOthers) {
   RouteOptions options;
   const Route route = route_problem(calibrated, poses_in(calibrated, plan_file), options, Monitor{});
   EXPECT_TRUE(route.notes.empty());
-  EXPECT_EQ(json::parse(route_json(route))["problem"]["parameters"]["sha256"], calibrated.parameters->sha256);
+  EXPECT_EQ(parse_json(route_json(route))["problem"]["parameters"]["sha256"], calibrated.parameters->sha256);
   Problem changed = nominal;
   folder.write("cal.yaml", "posewright_parameters: 1\nvariant: " + nominal.variants.front().name +
                                "\nparameters: {leg_1.distal: {value: 0.3501}}\n");

@@ -13,6 +13,7 @@
 
 #include "posewright/lists/read_poses.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/support/json.hpp"
 #include "tests/formats/program_readers.hpp"
 #include "tests/formats/sequences.hpp"
 
@@ -252,7 +253,7 @@ TEST(PoseDocument, OfARouteMovesPosesViaPointsAndEndsOfMotionsButNotHome) {
   const std::string text = rewritten(*document, moved(document->poses()));
   const PoseSequence again = parse_sequence(text, "route.json");  // motions still lead from pose to pose
   EXPECT_EQ(again.home, route.home);
-  EXPECT_EQ(nlohmann::json::parse(text)["other"], "kept");
+  EXPECT_EQ(parse_json(text)["other"], "kept");
   const auto shifted = [](std::vector<double> q) {
     for (std::size_t i = 0; i < q.size(); ++i) q[i] += 0.001 * double(i + 1);
     return q;

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "posewright/support/json.hpp"
 #include "tests/kit/example_problems.hpp"
 #include "tests/kit/temporary_folder.hpp"
 
@@ -88,7 +89,7 @@ TEST(DrawProblem, AProblemIsYamlThatHoldsNoParameters) {
 
 TEST(DrawProblem, ItsDataAreThoseOfAPage) {
   const ProblemReport report = drawn_problem("");
-  const auto data = nlohmann::json::parse(report_json(report));
+  const auto data = parse_json(report_json(report));
   EXPECT_EQ(data["schema"], "posewright/report-of-problem/1");
   EXPECT_EQ(data["keyframes"].size(), data["verdicts"].size());
   EXPECT_EQ(data["keyframes"][0]["pose"], 0);

@@ -14,6 +14,7 @@
 #include "posewright/study/judgement.hpp"
 #include "posewright/study/study.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/support/json.hpp"
 #include "posewright/support/random.hpp"
 #include "posewright/tasks/evaluate_problem.hpp"
 #include "posewright/tasks/plan_problem.hpp"
@@ -84,7 +85,7 @@ MadeMoves make(const Problem& problem, int poses, int candidates, const Temporar
   made.file = folder.write("plan.json", plan_json(made.plan));
   ReportOptions options;
   options.sizes = options.candidates = false;
-  made.report = json::parse(report_json(report_problem(problem, made.file, options, Monitor{})));
+  made.report = parse_json(report_json(report_problem(problem, made.file, options, Monitor{})));
   return made;
 }
 

@@ -38,7 +38,7 @@ json calibration_of_kr270(const TemporaryFolder& folder) {
   CalibrateOptions options;
   options.data = folder.write("measured.csv", made.first_readings);
   options.hold_back = 4;
-  return json::parse(json_text(calibration_json(problem, options, calibrate_problem(problem, options, Monitor{}))));
+  return parse_json(json_text(calibration_json(problem, options, calibrate_problem(problem, options, Monitor{}))));
 }
 
 TEST(ReportResult, ResidualsBeforeAndAfterGiveTheErrorsByAxis) {
@@ -75,7 +75,7 @@ TEST(ReportResult, PageHoldsTheResultAsItsFileHasIt) {
   EXPECT_FALSE(is_plan(file));
   const ResultReport report = report_result(file);
   EXPECT_EQ(report.title, "kr270");
-  const json data = json::parse(report_json(report));
+  const json data = parse_json(report_json(report));
   EXPECT_EQ(data["schema"], "posewright/report-of-result/1");
   EXPECT_EQ(data["result"], c);
   const std::string page = report_html(report);

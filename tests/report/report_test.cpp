@@ -13,6 +13,7 @@
 #include "posewright/results/plan.hpp"
 #include "posewright/study/study.hpp"
 #include "posewright/support/file.hpp"
+#include "posewright/support/json.hpp"
 #include "posewright/tasks/plan_problem.hpp"
 #include "posewright/tasks/route_problem.hpp"
 #include "tests/kit/design_edits.hpp"
@@ -54,7 +55,7 @@ Made make_report(const Problem& problem, const DesignEdits& options, const Tempo
                  const ReportOptions& report_options) {
   Made made{planned(problem, options), {}};
   const auto file = folder.write("plan.json", plan_json(made.plan));
-  made.report = json::parse(report_json(report_problem(problem, file, report_options, Monitor{})));
+  made.report = parse_json(report_json(report_problem(problem, file, report_options, Monitor{})));
   return made;
 }
 
@@ -140,7 +141,7 @@ TEST(Report, PlaysTheRouteThroughEveryPose) {
   ReportOptions brief;
   brief.sizes = brief.candidates = false;
   brief.route = folder.write("route.json", route_json(route));
-  const json report = json::parse(report_json(report_problem(problem, file, brief, Monitor{})));
+  const json report = parse_json(report_json(report_problem(problem, file, brief, Monitor{})));
   std::vector<int> stops, expected = {0};
   double before = -1;
   for (const json& keyframe : report["keyframes"]) {
@@ -199,7 +200,7 @@ TEST(Report, RoutesOfOtherPlansAreRefusedAndClosedOnesCountTheirFirstPoseOnce) {
 TEST(Report, PosesOfAShortenedPlanKeepTheirIds) {
   const TemporaryFolder folder;
   const Problem problem = read_problem(examples_folder() / "delta" / "problem.yaml");
-  json plan = json::parse(plan_json(planned(problem, quick_report(12, 60))));
+  json plan = parse_json(plan_json(planned(problem, quick_report(12, 60))));
   plan["poses"].erase(1);
   ReportOptions brief;
   brief.sizes = brief.candidates = false;
@@ -295,7 +296,7 @@ TEST(Report, PageHoldsItsDataOnceAndNothingInItEndsTheElement) {
   const auto begin = page.find(open);
   ASSERT_NE(begin, std::string::npos);
   const auto end = page.find("</script>", begin);
-  const json data = json::parse(page.substr(begin + open.size(), end - begin - open.size()));
+  const json data = parse_json(page.substr(begin + open.size(), end - begin - open.size()));
   EXPECT_EQ(data["notes"].back(), report.notes.back());
   EXPECT_EQ(data["plan"]["criterion"]["log_det"], plan.log_det);
 }

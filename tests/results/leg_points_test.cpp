@@ -6,6 +6,7 @@
 #include <map>
 
 #include "posewright/results/calibration.hpp"
+#include "posewright/support/json.hpp"
 #include "posewright/tasks/calibrate_problem.hpp"
 #include "tests/kit/virtual_file.hpp"
 
@@ -20,7 +21,7 @@ nlohmann::json leg_points(const std::string& file, int poses, Calibration* found
   options.profile = {ProfileChoice::none};
   const Calibration calibration = calibrate_problem(readings.problem, options, Monitor{});
   if (found) *found = calibration;
-  return nlohmann::json::parse(calibration_json(readings.problem, options, calibration)["leg_points"].dump());
+  return parse_json(calibration_json(readings.problem, options, calibration)["leg_points"].dump());
 }
 
 TEST(LegPoints, AreNominalAsTheProblemFileHasThemAndMovedByTheEstimatedParametersAlone) {

@@ -11,6 +11,7 @@
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/results/plan.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/support/json.hpp"
 #include "posewright/tasks/compare_problem.hpp"
 #include "posewright/tasks/evaluate_problem.hpp"
 #include "tests/kit/design_edits.hpp"
@@ -184,13 +185,13 @@ TEST_F(Discrepancies, MeasuredPosesAndPriorsCountInBothCriteria) {
 TEST_F(Discrepancies, ThePlanFileSaysIt) {
   const Problem p = problem("{variant: plain, truth: longer, criterion: discriminate, poses: 6, candidates: 200}");
   const Plan made = plan_problem(p, {}, Monitor{});
-  const auto json = nlohmann::json::parse(plan_json(made));
+  const auto json = parse_json(plan_json(made));
   EXPECT_EQ(json["discrimination"]["truth"], "longer");
   EXPECT_EQ(json["discrimination"]["degrees_of_freedom"], 9);
   EXPECT_TRUE(json["discrimination"]["by_tolerance"].is_null());
   EXPECT_THAT(plan_summary(made), HasSubstr("If longer is true, fitting plain leaves residuals of noncentrality"));
   EXPECT_THAT(plan_summary(made), HasSubstr("a chi-square test of 9 degrees of freedom at 5 % rejects plain with"));
-  EXPECT_FALSE(nlohmann::json::parse(plan_json(plan(problem(six), "o1", ""))).contains("discrimination"));
+  EXPECT_FALSE(parse_json(plan_json(plan(problem(six), "o1", ""))).contains("discrimination"));
 }
 
 template <class Error>

@@ -14,6 +14,7 @@
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/results/plan.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/support/json.hpp"
 #include "posewright/support/random.hpp"
 #include "posewright/tasks/calibrate_problem.hpp"
 #include "posewright/tasks/evaluate_problem.hpp"
@@ -546,9 +547,7 @@ TEST_F(UnmodelledEffects, WithoutACriterionThePlanIsTheAutomaticOne) {
     const Problem p = problem("", "{variant: plain, poses: 8, candidates: 100" + criterion + "}");
     return plan_json(planned(p, {}));
   };
-  const auto poses = [&](const std::string& criterion) {
-    return nlohmann::json::parse(plan_of(criterion))["poses"].dump();
-  };
+  const auto poses = [&](const std::string& criterion) { return parse_json(plan_of(criterion))["poses"].dump(); };
   EXPECT_EQ(poses(""), poses(", criterion: auto"));
   EXPECT_THAT(plan_of(""), HasSubstr("Criterion bias, since 8 poses are enough where 2 determine"));
 }
@@ -603,7 +602,7 @@ TEST_F(UnmodelledEffects, FilesStateThemAndTheEvaluationOfAPlanRepeatsThem) {
   EXPECT_NEAR(again.log_det, plan.log_det, 1e-9);
   EXPECT_NEAR(*again.rho0 / *plan.rho0, 1, 1e-9);
   EXPECT_NEAR(again.criterion_value / plan.criterion_value, 1, 1e-9);
-  const auto json = nlohmann::json::parse(plan_json(plan));
+  const auto json = parse_json(plan_json(plan));
   EXPECT_EQ(json["unmodelled"]["size"], 3e-4);
   EXPECT_EQ(json["unmodelled"]["features"], plan.unmodelled->features);
 }

@@ -12,6 +12,7 @@
 #include "posewright/formats/pose_sequence.hpp"
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/results/plan.hpp"
+#include "posewright/support/json.hpp"
 #include "posewright/tasks/evaluate_problem.hpp"
 #include "posewright/tasks/place_stations.hpp"
 #include "posewright/tasks/plan_problem.hpp"
@@ -168,7 +169,7 @@ TEST(ExampleCell, ReadingTakesItsTimeForEveryTargetThatATrackerSees) {
   options.reading = 2;
   options.settle = 7;
   const Route slow = route_problem(problem, poses_in(problem, file), options, Monitor{});
-  const nlohmann::json json = nlohmann::json::parse(route_json(slow));
+  const nlohmann::json json = parse_json(route_json(slow));
   // From what is written: three readings of two seconds of whatever is seen.
   double seen = 0;
   for (const auto* list : {&json["poses"], &json["references"]})

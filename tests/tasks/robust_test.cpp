@@ -232,7 +232,7 @@ TEST_F(DrawnRobotsOfProblems, FiguresOfAPlanAreThoseOfItsWrittenPosesByGeometry)
   }
   std::sort(logs.begin(), logs.end());
   EXPECT_NEAR(robust.value, std::exp((logs[0] + logs[1] + logs[2]) / 3), 1e-9);
-  const auto json = nlohmann::json::parse(plan_json(plan));
+  const auto json = parse_json(plan_json(plan));
   EXPECT_EQ(json["robust"]["draws"], 12);
   EXPECT_EQ(json["robust"]["measure"], "tail 0.25");
   EXPECT_THAT(plan_summary(plan), HasSubstr("On 12 robots drawn from the tolerances"));

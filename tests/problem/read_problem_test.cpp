@@ -284,6 +284,21 @@ TEST_F(ReadProblemFile, WhatIsNoTextFileIsRefused) {
   EXPECT_THAT(error(write("# nothing\n")), HasSubstr("problem.yaml: is empty"));
 }
 
+TEST(ReadProblem, AKeyChangedAgainHasItsLastValueAndTheHashOfThat) {
+  const auto changed = [](const KeyEdits& edits) { return parse_problem(example::serial, "problem.yaml", {}, edits); };
+  const KeyEdit noise = {"measurement.device.noise", "0.2 mm"}, gear = {"variants.geometric.tolerance.*.gear", "0.002"};
+  const Problem once = changed({noise, gear});
+  EXPECT_EQ(changed({{noise.key, "0.3 mm"}, gear, noise}).sha256, once.sha256);
+  EXPECT_EQ(changed({noise, gear, gear, noise}).changed.size(), 2U);
+  EXPECT_NE(changed({{noise.key, "0.3 mm"}, gear}).sha256, once.sha256);
+
+  const std::string limits = "workspace.joints.limits", axis = limits + ".joint_a1";
+  const Problem nested = changed({{axis, "[-1, 1]"}, {limits, "{joint_a1: [-2, 2]}"}, {axis, "[-0.5, 0.5]"}});
+  EXPECT_EQ(nested.changed.size(), 3U);
+  ASSERT_EQ(nested.workspace.limits.size(), 1U);
+  EXPECT_EQ(nested.workspace.limits.front().lower, -0.5);
+}
+
 // The second road: a file in which a person wrote the values.
 TEST(ReadProblem, ChangedKeysAreReadAsIfTheFileHadThem) {
   const KeyEdits changed = {{"measurement.device.noise", "0.2 mm"},

@@ -195,8 +195,8 @@ void bind_plan_class(py::module_& m) {
           [](const Plan& p) { return array_of(p.robust ? p.robust->efficiency : std::vector<double>()); },
           "Of each robot drawn from the tolerances, against its own best plan; empty where none were drawn.")
       .def_readonly("seed", &Plan::seed)
-      .def_readonly("problem_file", &Plan::problem_file)
-      .def_readonly("problem_sha256", &Plan::problem_sha256)
+      .def_property_readonly("problem_file", [](const Plan& p) { return p.problem.file; })
+      .def_property_readonly("problem_sha256", [](const Plan& p) { return p.problem.sha256; })
       .def("summary", &plan_summary, "The table that the command line prints.")
       .def(
           "to_json", [](const Plan& p) { return plan_json(p); }, "plan.json.")

@@ -5,20 +5,17 @@
 #include "sight_json.hpp"
 
 namespace posewright {
-namespace {
 
-nlohmann::ordered_json problem_part(const Problem& problem) {
-  return problem_json(problem.file.string(), problem.sha256, parameters_of(problem), problem.changed);
+ProblemOrigin origin_of(const Problem& problem) {
+  return {problem.file.string(), problem.sha256, parameters_of(problem), problem.changed};
 }
 
-}  // namespace
-
 nlohmann::ordered_json begin_document(const char* schema, const Problem& problem) {
-  return {{"schema", schema}, {"version", version}, {"problem", problem_part(problem)}};
+  return {{"schema", schema}, {"version", version}, {"problem", problem_json(origin_of(problem))}};
 }
 
 nlohmann::ordered_json begin_document(const char* schema, const Problem& problem, std::uint64_t seed) {
-  return {{"schema", schema}, {"version", version}, {"seed", seed}, {"problem", problem_part(problem)}};
+  return {{"schema", schema}, {"version", version}, {"seed", seed}, {"problem", problem_json(origin_of(problem))}};
 }
 
 }  // namespace posewright

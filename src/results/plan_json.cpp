@@ -124,10 +124,10 @@ nlohmann::ordered_json tool_pose_json(const Eigen::Isometry3d& X) {
   return {{"position", {p.x(), p.y(), p.z()}}, {"quaternion_xyzw", {q.x(), q.y(), q.z(), q.w()}}};
 }
 
-nlohmann::ordered_json problem_json(const std::string& file, const std::string& sha256,
-                                    const ParametersFile& parameters, const KeyEdits& changed) {
-  Json json = {{"file", file}, {"sha256", sha256}};
-  for (const auto& [key, value] : changed) json["set"].push_back({{"key", key}, {"value", value}});
+nlohmann::ordered_json problem_json(const ProblemOrigin& problem) {
+  const ParametersFile& parameters = problem.parameters;
+  Json json = {{"file", problem.file}, {"sha256", problem.sha256}};
+  for (const auto& [key, value] : problem.changed) json["set"].push_back({{"key", key}, {"value", value}});
   if (!parameters.file.empty())
     json["parameters"] = {{"file", parameters.file}, {"sha256", parameters.sha256}, {"variant", parameters.variant}};
   return json;
@@ -244,7 +244,7 @@ std::string plan_json(const Plan& plan, const std::vector<WrittenWith>& files) {
   Json json = {{"schema", "posewright/plan/1"},
                {"version", version},
                {"seed", plan.seed},
-               {"problem", problem_json(plan.problem_file, plan.problem_sha256, plan.parameters_file, plan.changed)}};
+               {"problem", problem_json(plan.problem)}};
   if (!files.empty()) json["files"] = files_json(files);
   if (!plan.variant.empty()) json["variant"] = plan.variant;
   json["method"] = plan.method;

@@ -33,8 +33,8 @@ std::string headline(const Plan& plan) {
   if (nuisance > 0) text += fmt::format(" and {} nuisance parameters", nuisance);
   if (plan.interrupted) text += " (search interrupted: best plan so far)";
   text += "\n";
-  if (!plan.parameters_file.file.empty())
-    text += fmt::format("At the calibrated parameters of {}.\n", plan.parameters_file.file);
+  if (!plan.problem.parameters.file.empty())
+    text += fmt::format("At the calibrated parameters of {}.\n", plan.problem.parameters.file);
   if (plan.prior) text += "Tolerances are used as prior knowledge: σ and log det include them.\n";
   return text;
 }

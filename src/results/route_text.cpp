@@ -139,19 +139,18 @@ double Route::change_seconds() const {
 double Route::reading_seconds() const { return std::accumulate(reading.begin(), reading.end(), 0.0); }
 
 std::string route_json(const Route& route, const std::vector<WrittenWith>& files) {
-  Json json = {
-      {"schema", "posewright/route/1"},
-      {"version", version},
-      {"seed", route.seed},
-      {"plan", route.plan_file},
-      {"problem", problem_json(route.problem_file, route.problem_sha256, route.parameters_file, route.changed)},
-      {"problem_changed", route.problem_changed},
-      {"interrupted", route.interrupted},
-      {"closed", route.closed},
-      {"from_home", route.from_home},
-      {"names", route.names},
-      {"units", route.units},
-      {"home", route.home}};
+  Json json = {{"schema", "posewright/route/1"},
+               {"version", version},
+               {"seed", route.seed},
+               {"plan", route.plan_file},
+               {"problem", problem_json(route.problem)},
+               {"problem_changed", route.problem_changed},
+               {"interrupted", route.interrupted},
+               {"closed", route.closed},
+               {"from_home", route.from_home},
+               {"names", route.names},
+               {"units", route.units},
+               {"home", route.home}};
   if (!files.empty()) json["files"] = files_json(files);
   json["order"] = Json::array();
   for (const PlannedPose& pose : route.poses) json["order"].push_back(pose.id);

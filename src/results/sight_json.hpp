@@ -13,8 +13,7 @@ nlohmann::ordered_json actuators_json(const PlannedPose& pose);
 nlohmann::ordered_json nearest_json(const std::optional<BodyDistance>& nearest);
 nlohmann::ordered_json tool_pose_json(const Eigen::Isometry3d& X);
 /// Key `problem` of plans and routes.
-nlohmann::ordered_json problem_json(const std::string& file, const std::string& sha256,
-                                    const ParametersFile& parameters, const KeyEdits& changed);
+nlohmann::ordered_json problem_json(const ProblemOrigin& problem);
 /// Key `files` of plans and routes.
 nlohmann::ordered_json files_json(const std::vector<WrittenWith>& files);
 nlohmann::ordered_json curve_point_json(const CurvePoint& point);

@@ -56,10 +56,7 @@ class ListEvaluation {
     const Judgement judgement = judge(study_, poses_);
     Plan& plan = result.plan;
     plan.seed = study_.planner.seed;
-    plan.problem_file = problem.file.string();
-    plan.problem_sha256 = problem.sha256;
-    plan.changed = problem.changed;
-    plan.parameters_file = parameters_of(problem);
+    plan.problem = origin_of(problem);
     plan.method = "given";
     fill_judgement(plan, judgement, study_);
     plan.expected = expected_error(study_.configurations, study_.first(), with_measured(study_, poses_),

@@ -10,7 +10,6 @@
 #include "fill_plan.hpp"
 #include "poses_at_risk.hpp"
 #include "posewright/criterion/registry.hpp"
-#include "posewright/lists/parameters_file.hpp"
 #include "posewright/problem/design_keys.hpp"
 #include "posewright/study/expected_error.hpp"
 #include "posewright/study/judgement.hpp"
@@ -180,10 +179,7 @@ class PlanSearch {
     const Judgement judgement = judge(study_, poses);
     Plan plan;
     plan.seed = study_.planner.seed;
-    plan.problem_file = problem_.file.string();
-    plan.problem_sha256 = problem_.sha256;
-    plan.changed = problem_.changed;
-    plan.parameters_file = parameters_of(problem_);
+    plan.problem = origin_of(problem_);
     plan.method = study_.method;
     plan.minimum_distance = minimum_distance_;
     fill_judgement(plan, judgement, study_);

@@ -148,7 +148,7 @@ Plan begun_plan(const SelectOptions& options, const std::string& sha256) {
   plan.method = options.method;
   plan.scaling = "none";
   plan.reserve = options.reserve;
-  plan.problem_sha256 = sha256;
+  plan.problem.sha256 = sha256;
   return plan;
 }
 
@@ -232,7 +232,7 @@ Plan select_blocks(BlockFile file, const SelectOptions& options, const Monitor& 
 Plan select_blocks(const std::filesystem::path& path, const SelectOptions& options, const Monitor& monitor) {
   const auto begin = std::chrono::steady_clock::now();
   Plan plan = select_blocks(read_blocks(path, options.rows), options, monitor);
-  plan.problem_file = path.string();
+  plan.problem.file = path.string();
   plan.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return plan;
 }
@@ -250,7 +250,7 @@ Plan select_spread(const std::filesystem::path& file, const SelectOptions& optio
   if (share.total > std::size_t(std::numeric_limits<int>::max()))
     throw CannotDo(std::to_string(share.total) + " candidates are more than can be numbered");
   Plan plan = begun_plan(options, share.sha256);
-  plan.problem_file = file.string();
+  plan.problem.file = file.string();
   std::vector<std::string> names(std::size_t(share.blocks.columns()));
   for (std::size_t j = 0; j < names.size(); ++j) names[j] = "column " + std::to_string(j);
   const std::vector<Parameter> parameters = labels(names, 0);

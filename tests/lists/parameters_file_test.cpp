@@ -134,7 +134,7 @@ TEST_F(PlannedAtParameters, ReportAndEvaluationAgreeAtTheParametersAndSaySoElsew
   const PoseListEvaluation same = judged(calibrated);
   EXPECT_TRUE(same.notes.empty());
   EXPECT_NEAR(same.plan.log_det, plan.log_det, 1e-9 * std::abs(plan.log_det));
-  EXPECT_EQ(same.plan.parameters_file.sha256, calibrated.parameters->sha256);
+  EXPECT_EQ(same.plan.problem.parameters.sha256, calibrated.parameters->sha256);
   const PoseListEvaluation other = judged(nominal);
   ASSERT_EQ(other.notes.size(), 1U);
   EXPECT_THAT(other.notes.front(), HasSubstr("this run uses nominal ones (--parameters "));

@@ -305,7 +305,7 @@ TEST(Report, SaysThatTheProblemHasChanged) {
   const TemporaryFolder folder;
   const Problem problem = read_problem(examples_folder() / "five_bar" / "problem.yaml");
   Plan plan = plan_problem(problem, {}, Monitor{});
-  plan.problem_sha256 = std::string(64, '0');
+  plan.problem.sha256 = std::string(64, '0');
   ReportOptions brief;
   brief.sizes = brief.candidates = false;
   const Report report = report_problem(problem, folder.write("plan.json", plan_json(plan)), brief, Monitor{});

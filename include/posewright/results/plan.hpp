@@ -17,6 +17,8 @@
 
 namespace posewright {
 
+struct Problem;
+
 /// A named value with its unit: one entry of a configuration or an actuator.
 struct NamedValue {
   std::string name;
@@ -236,12 +238,18 @@ struct RobustPlan {
   bool worth_it() const { return gain() > of_no_use; }
 };
 
+/// The problem that a plan, route or evaluation was made for, as its file states it.
+struct ProblemOrigin {
+  std::string file, sha256;     ///< of a plan from bare blocks: those of the blocks
+  ParametersFile parameters{};  ///< no file: nominal ones
+  KeyEdits changed{};           ///< Problem::changed
+};
+ProblemOrigin origin_of(const Problem& problem);
+
 /// All data of a written plan.
 struct Plan {
   std::uint64_t seed = 0;
-  std::string problem_file, problem_sha256;
-  ParametersFile parameters_file{};
-  KeyEdits changed{};   ///< Problem::changed
+  ProblemOrigin problem{};
   std::string variant;  ///< empty for a plan from bare blocks
   std::string criterion = "o1", method = "exchange", scaling = "tolerance";
   bool determinant = true;       ///< the criterion is log_det, so that its bound is one of log_det

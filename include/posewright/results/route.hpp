@@ -38,9 +38,8 @@ struct RouteWorth {
 
 /// The order of measurement and the motions between the poses.
 struct Route {
-  std::string plan_file, problem_file, problem_sha256;
-  ParametersFile parameters_file{};
-  KeyEdits changed{};            ///< Problem::changed
+  std::string plan_file;
+  ProblemOrigin problem{};
   bool problem_changed = false;  ///< the problem file is not the one the plan was made for
   std::uint64_t seed = 0;
   bool closed = false, from_home = false;

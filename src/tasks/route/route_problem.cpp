@@ -64,10 +64,7 @@ class Router {
         without_roadmap_(without_roadmap(problem)),
         variant_(place_variant({without_roadmap_, find_variant(problem, "")}, cell_)),
         space_(problem, cell_) {
-    route_.problem_file = problem.file.string();
-    route_.problem_sha256 = problem.sha256;
-    route_.changed = problem.changed;
-    route_.parameters_file = parameters_of(problem);
+    route_.problem = origin_of(problem);
     route_.seed = options.seed;
     route_.closed = options.closed;
     route_.from_home = options.from_home;

@@ -21,8 +21,8 @@ constexpr int random_configurations = 200;
 constexpr std::uint64_t size_stream = 0x512e;
 
 bool stands_anywhere(const std::string& name) {
-  constexpr std::array<const char*, 4> frames = {"base.", "base@", "station.", "anchor."};
-  return std::ranges::any_of(frames, [&](const char* frame) { return name.starts_with(frame); });
+  constexpr std::array<std::string_view, 3> frames = {"base", "station", "anchor"};
+  return std::ranges::count(frames, std::string_view(name).substr(0, name.find_first_of(".@"))) > 0;
 }
 
 bool is_free(const Parameter& p, Prior prior) { return p.places && !counts(p, prior); }

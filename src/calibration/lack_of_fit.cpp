@@ -1,5 +1,6 @@
 #include "posewright/calibration/lack_of_fit.hpp"
 
+#include "posewright/model/instrument_choice.hpp"
 #include "posewright/model/whitening.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/distributions.hpp"
@@ -21,7 +22,7 @@ struct Within {
 };
 
 Within within_poses(const IdentificationModel& instrument, const std::vector<RepeatedReadings>& repeated,
-                    const std::vector<double>& correction, int repeats) {
+                    const std::vector<double>& correction, const MeasurementSpec& measurement) {
   Within within;
   Linearisation at;
   Eigen::VectorXd y;
@@ -30,6 +31,7 @@ Within within_poses(const IdentificationModel& instrument, const std::vector<Rep
     if (visit.deviations.cols() < 2 || read.empty() ||
         !instrument.predict_and_linearise(visit.q, correction, {}, at, y))
       continue;
+    const int repeats = instrument_at(measurement, instrument.coordinates(), visit.q).repeats;
     factorise_covariance(repeats * at.covariance(read, read), at.factor);
     Eigen::MatrixXd whitened = visit.deviations(read, Eigen::all);
     at.factor.matrixL().solveInPlace(whitened);
@@ -42,11 +44,11 @@ Within within_poses(const IdentificationModel& instrument, const std::vector<Rep
 
 }  // namespace
 
-TestResult lack_of_fit(const IdentificationModel& model, const IdentificationModel& instrument, int repeats,
-                       const std::vector<MeasuredPose>& poses, const std::vector<RepeatedReadings>& repeated,
-                       const Fit& result) {
+TestResult lack_of_fit(const IdentificationModel& model, const IdentificationModel& instrument,
+                       const MeasurementSpec& measurement, const std::vector<MeasuredPose>& poses,
+                       const std::vector<RepeatedReadings>& repeated, const Fit& result) {
   TestResult test;
-  const Within within = within_poses(instrument, repeated, result.correction, repeats);
+  const Within within = within_poses(instrument, repeated, result.correction, measurement);
   if (!(within.variance > 0) || result.freedom < 1 || !(result.left > 0) || !result.weights.empty()) return test;
   Linearisation whole, noise;
   Eigen::VectorXd y;

@@ -49,6 +49,7 @@ LineOfSight::Looked& LineOfSight::looked_at(std::span<const double> q) const {
 
 std::unique_ptr<LineOfSight> LineOfSight::make(const Problem& problem, const IdentificationModel& model,
                                                const Collision* collision) {
+  if (problem.workspace.line_of_sight) require_one_instrument(problem, "workspace.line_of_sight");
   std::unique_ptr<LineOfSight> sight(new LineOfSight(problem, model, collision));
   const auto& asked = problem.workspace.line_of_sight;
   if (!asked) return sight->station_names_.empty() ? nullptr : std::move(sight);

@@ -6,7 +6,8 @@ namespace posewright {
 
 void write_choices(nlohmann::ordered_json& pose, const PoseChoices& choices, bool nulls) {
   if (nulls)
-    for (const ChoiceKey& key : choice_keys) pose[key.name] = nullptr;
+    for (const ChoiceKey& key : choice_keys)
+      if (key.always) pose[key.name] = nullptr;
   for (const auto& [name, label] : choices) {
     const auto numbers = numbers_in(label);
     if (choice_key(name) != nullptr) pose[name] = label;

@@ -195,8 +195,9 @@ Eigen::VectorXd MeasuredColumns::readings(int row) const {
     else y[i] = value(row, reading.name, reading.unit);
   }
   // A rotation vector is one reading of three numbers.
-  const bool turns = count >= 3 && model_.readings().back().name == pose_names[5];
-  if (turns && !y.tail<3>().allFinite()) y.tail<3>().setConstant(not_read);
+  for (Eigen::Index i = 2; i < count; ++i)
+    if (model_.readings()[std::size_t(i)].name.ends_with(pose_names[5]) && !y.segment<3>(i - 2).allFinite())
+      y.segment<3>(i - 2).setConstant(not_read);
   return y;
 }
 

@@ -9,6 +9,7 @@
 
 #include "measured_columns.hpp"
 #include "posewright/lists/platform_images.hpp"
+#include "posewright/model/instrument_choice.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/text_file.hpp"
 #include "suspicious_rows.hpp"
@@ -40,9 +41,9 @@ bool repeats(const std::vector<Coordinate>& coordinates, const Row& a, const Row
 /// Rows of one configuration that follow each other become one pose with their mean.
 class ReadingAverages {
  public:
-  /// @param repeats  readings that a row is the mean of where no configuration has several rows
-  ReadingAverages(const IdentificationModel& model, int repeats, MeasuredData& data)
-      : model_(model), repeats_(repeats), data_(data) {
+  /// @param measurement  says how many readings a row is the mean of where no configuration has several rows
+  ReadingAverages(const IdentificationModel& model, const MeasurementSpec& measurement, MeasuredData& data)
+      : model_(model), measurement_(measurement), data_(data) {
     squares_.setZero(Eigen::Index(model.readings().size()));
     counts_ = squares_;
   }
@@ -105,7 +106,7 @@ class ReadingAverages {
     }
     model_.shifted(first, sum.cwiseQuotient(number), mean);
     for (Eigen::Index i = 0; i < sum.size(); ++i)
-      if (!std::isfinite(mean[i]) && !model_.readings()[std::size_t(i)].name.starts_with("pose.r"))
+      if (!std::isfinite(mean[i]) && model_.readings()[std::size_t(i)].name.find("pose.r") == std::string::npos)
         mean[i] = plain_mean(i);
     add_spread(mean);
     return mean;
@@ -136,8 +137,9 @@ class ReadingAverages {
           row.y.array().isFinite().cast<double>() * pose.y.array().isFinite().cast<double>();
     const Eigen::MatrixXd together = was_read * was_read.transpose();
     const Eigen::VectorXd alone = together.diagonal().cwiseMax(1.0);
-    if ((together.array() == double(repeats_)).all()) return;
-    pose.reading_share = repeats_ * together.cwiseQuotient(alone * alone.transpose());
+    const int repeats = instrument_at(measurement_, model_.coordinates(), pose.q).repeats;
+    if ((together.array() == double(repeats)).all()) return;
+    pose.reading_share = repeats * together.cwiseQuotient(alone * alone.transpose());
   }
 
   double plain_mean(Eigen::Index i) const {
@@ -152,7 +154,7 @@ class ReadingAverages {
   }
 
   const IdentificationModel& model_;
-  int repeats_;
+  const MeasurementSpec& measurement_;
   MeasuredData& data_;
   std::vector<Row> group_;
   Eigen::VectorXd squares_, counts_;
@@ -166,6 +168,21 @@ int id_of(const std::string& cell, const SourcePlace& place) {
   if (code != std::errc() || end != cell.data() + cell.size() || id < 1)
     throw InputError(place, "id '" + cell.substr(0, 40) + "'", "a whole number above 0 is expected");
   return id;
+}
+
+/// A row of a list's instrument has no readings of another one.
+void require_own_readings(const Row& row, const MeasurementSpec& measurement, const IdentificationModel& model,
+                          const SourcePlace& place) {
+  if (instruments_of(measurement) == nullptr) return;
+  Eigen::VectorXd own = row.y;
+  model.blank_hidden(row.q, own);
+  for (Eigen::Index i = 0; i < own.size(); ++i)
+    if (std::isfinite(row.y[i]) && !std::isfinite(own[i]))
+      throw InputError(
+          place,
+          fmt::format("has a value of '{}' in a row of instrument '{}'", model.readings()[std::size_t(i)].name,
+                      instrument_at(measurement, model.coordinates(), row.q).name),
+          "a row for each instrument, the cells of the others empty");
 }
 
 bool held_back(const std::string& cell, const SourcePlace& place) {
@@ -203,7 +220,7 @@ MeasuredData parse_measured_data(const std::string& text, const std::filesystem:
   data.notes = columns.notes();
   data.rows = columns.rows();
   data.orientation = columns.orientation();
-  ReadingAverages averaging(model, problem.measurement.repeats, data);
+  ReadingAverages averaging(model, problem.measurement, data);
   SuspiciousRows suspicious(model);
   const std::optional<PlatformPoints> platform = platform_points(problem.robot, problem.measurement, model);
   for (int i = 0; i < columns.rows(); ++i) {
@@ -214,6 +231,7 @@ MeasuredData parse_measured_data(const std::string& text, const std::filesystem:
     row.held_back = !columns.text(i, "use").empty() && held_back(columns.text(i, "use"), place);
     row.q = columns.configuration(i);
     row.y = columns.readings(i);
+    require_own_readings(row, problem.measurement, model, place);
     if (!row.y.array().isFinite().any()) {
       data.notes.push_back(
           fmt::format("{}:{}: no target was read completely; the row is left out", file.string(), row.line));

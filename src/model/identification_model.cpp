@@ -241,6 +241,7 @@ int IdentificationModel::visible_rows(std::span<const double> q) const {
 }
 
 void IdentificationModel::blank_hidden(std::span<const double> q, Eigen::VectorXd& y) const {
+  do_blank_unread(q, y);
   if (visibility_ == nullptr || rows_per_target_ == 0) return;
   std::vector<char> seen(std::size_t(visibility_->targets()));
   visibility_->visible(q, seen);
@@ -249,6 +250,8 @@ void IdentificationModel::blank_hidden(std::span<const double> q, Eigen::VectorX
       y.segment(Eigen::Index(t) * rows_per_target_, rows_per_target_)
           .setConstant(std::numeric_limits<double>::quiet_NaN());
 }
+
+void IdentificationModel::do_blank_unread(std::span<const double>, Eigen::VectorXd&) const {}
 
 bool IdentificationModel::reading_twists(std::span<const double> q,
                                          Eigen::Matrix<double, 6, Eigen::Dynamic>& twists) const {

@@ -28,6 +28,8 @@ Measurement model_of(const CameraMeasurement&, const MeasurementSpec& spec) {
   return std::make_unique<CameraModel>(spec);
 }
 Measurement model_of(const JointsMeasurement&, const MeasurementSpec&) { return nullptr; }
+// Of several instruments each has a model of its own (InstrumentChoice).
+Measurement model_of(const InstrumentList&, const MeasurementSpec&) { return nullptr; }
 
 /// Empty view for an instrument without one.
 template <class Instrument>

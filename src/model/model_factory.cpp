@@ -6,6 +6,7 @@
 #include "posewright/model/elastic_chain.hpp"
 #include "posewright/model/five_bar.hpp"
 #include "posewright/model/given_poses.hpp"
+#include "posewright/model/instrument_choice.hpp"
 #include "posewright/model/joint_effects.hpp"
 #include "posewright/model/load_difference.hpp"
 #include "posewright/model/measurement_factory.hpp"
@@ -57,13 +58,22 @@ std::unique_ptr<IdentificationModel> observed(const ProblemVariant& variant) {
   const Problem& problem = variant.problem;
   if (const auto* compensator = std::get_if<CompensatorGeometrySpec>(&problem.robot))
     return std::make_unique<CompensatorGeometry>(*compensator, problem.measurement);
+  if (const std::vector<MeasurementSpec>* instruments = instruments_of(problem.measurement)) {
+    std::vector<std::unique_ptr<ExplicitModel>> models;
+    std::vector<std::string> names;
+    for (const MeasurementSpec& one : *instruments) {
+      models.push_back(std::make_unique<ExplicitModel>(make_tip(variant), make_measurement(one), one.repeatability));
+      names.push_back(one.name);
+    }
+    return std::make_unique<InstrumentChoice>(std::move(models), names);
+  }
   return observe(make_tip(variant), problem.measurement, problem);
 }
 
 }  // namespace
 
 Problem without_pose_errors(Problem problem) {
-  problem.measurement.repeatability = {};
+  for_each_instrument(problem.measurement, [](MeasurementSpec& instrument) { instrument.repeatability = {}; });
   set_joint_noise(problem.robot, 0.0);
   return problem;
 }

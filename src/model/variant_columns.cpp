@@ -49,12 +49,12 @@ void for_each_value(const ParameterNames& names, const ProblemFile& file, const 
   }
 }
 
-/// Base, tool, targets, stations, anchors; a camera and its board but not the lens.
+/// Base, tool, targets, stations, anchors; a camera and its board but not the lens. Those of an instrument of a list or
+/// of a further campaign are "target@NAME.P1.x".
 bool places(const Parameter& p) {
-  constexpr std::array<const char*, 7> prefixes = {"base.",   "tool.",   "target.", "station.",
-                                                   "anchor.", "camera.", "board."};
+  constexpr std::array<std::string_view, 7> frames = {"base", "tool", "target", "station", "anchor", "camera", "board"};
   return (p.unit == "m" || p.unit == "rad") &&
-         std::any_of(prefixes.begin(), prefixes.end(), [&](const char* prefix) { return p.name.starts_with(prefix); });
+         std::ranges::count(frames, std::string_view(p.name).substr(0, p.name.find_first_of(".@"))) > 0;
 }
 
 /// Free parameters of interest in the order written, or all geometric ones for `auto`.

@@ -1,5 +1,7 @@
 #include "posewright/problem/problem.hpp"
 
+#include "posewright/support/error.hpp"
+
 namespace posewright {
 
 Problem::Problem() = default;
@@ -19,6 +21,12 @@ struct SetJointNoise {
 };
 
 }  // namespace
+
+void require_one_instrument(const Problem& problem, const std::string& what) {
+  if (instruments_of(problem.measurement) == nullptr) return;
+  throw InputError(problem.at(problem.measurement.line), "measurement is a list of instruments",
+                   what + " works with one alone");
+}
 
 void set_joint_noise(RobotSpec& robot, double sigma) { std::visit(SetJointNoise{sigma}, robot); }
 

@@ -21,7 +21,8 @@ Measured read_isotropic(const Value& value, std::initializer_list<Quantity> quan
 }  // namespace
 
 DistanceMeasurement read_distance(const Section& section) {
-  section.allow({"type", "targets", "anchors", "between", "range", "device", "repeats", "repeatability", "load"});
+  section.allow(
+      {"type", "name", "targets", "anchors", "between", "range", "device", "repeats", "repeatability", "load"});
   DistanceMeasurement distance;
   distance.targets = read_targets(section.at("targets"));
   if (const Value* between = section.find("between")) {
@@ -46,7 +47,7 @@ DistanceMeasurement read_distance(const Section& section) {
 }
 
 CameraMeasurement read_camera(const Section& section) {
-  section.allow({"type", "mount", "camera", "board", "device", "repeats", "repeatability", "load"});
+  section.allow({"type", "name", "mount", "camera", "board", "device", "repeats", "repeatability", "load"});
   CameraMeasurement camera;
   camera.on_hand = section.at("mount").choice({"hand", "fixed"}) == "hand";
   const Section lens(section.at("camera"));
@@ -85,7 +86,7 @@ CameraMeasurement read_camera(const Section& section) {
 }
 
 JointsMeasurement read_joint_sensors(const Section& section) {
-  section.allow({"type", "sensors", "device", "repeats"});
+  section.allow({"type", "name", "sensors", "device", "repeats"});
   JointsMeasurement joints;
   if (const Value* sensors = section.find("sensors")) {
     joints.sensors = sensors->texts();

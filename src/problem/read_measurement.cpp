@@ -105,7 +105,7 @@ void read_point_device(const Value& value, PointNoise& noise, std::vector<Statio
 }
 
 PoseMeasurement read_pose(const Section& section) {
-  section.allow({"type", "mount", "components", "device", "repeats", "repeatability", "load"});
+  section.allow({"type", "name", "mount", "components", "device", "repeats", "repeatability", "load"});
   PoseMeasurement pose;
   const Value* mount = section.find("mount");
   pose.on_hand = mount != nullptr && mount->choice({"hand", "fixed"}) == "hand";
@@ -145,7 +145,7 @@ PoseMeasurement read_pose(const Section& section) {
 
 PointsMeasurement read_points(const Section& section, bool single) {
   const std::string_view key = single ? "target" : "targets";
-  section.allow({"type", key, "components", "device", "repeats", "repeatability", "load"});
+  section.allow({"type", "name", key, "components", "device", "repeats", "repeatability", "load"});
   PointsMeasurement points;
   if (single) points.targets.push_back(read_target("target", section.at(key)));
   else points.targets = read_targets(section.at(key));
@@ -227,10 +227,11 @@ std::vector<TargetSpec> read_targets(const Value& value) {
   return targets;
 }
 
-MeasurementSpec read_measurement(const Value& value) {
-  const Section section(value);
+namespace {
+
+MeasurementSpec read_instrument(const Section& section) {
   MeasurementSpec measurement;
-  measurement.line = value.line();
+  measurement.line = section.value().line();
   const std::string type = section.at("type").choice(instrument_names());
   for (const InstrumentReader& reader : instruments)
     if (reader.name == type) measurement.instrument = reader.read(section);
@@ -240,6 +241,61 @@ MeasurementSpec read_measurement(const Value& value) {
     measurement.repeatability = read_repeatability(*repeatability, type);
   if (const Value* load = section.find("load"))
     measurement.loaded_minus_unloaded = load->choice({"absolute", "loaded_minus_unloaded"}) != "absolute";
+  return measurement;
+}
+
+/// What a list does not have: instruments that do not read one tip, and choices of their own.
+void require_fits_list(const Section& section, MeasurementSpec& instrument) {
+  const auto* distance = std::get_if<DistanceMeasurement>(&instrument.instrument);
+  if (std::holds_alternative<JointsMeasurement>(instrument.instrument) ||
+      (distance != nullptr && distance->anchors.empty()))
+    section.at("type").fail("does not read where the tip is, and stands in a list of instruments",
+                            "allowed there: pose, points, position, camera, distance with anchors");
+  if (instrument.loaded_minus_unloaded)
+    section.at("load").fail("is loaded_minus_unloaded in a list of instruments", "allowed there: absolute");
+  if (const std::vector<StationSpec>* stations = stations_of(instrument); stations != nullptr && stations->size() > 1)
+    section.at("device").fail("has several stations in a list of instruments",
+                              "one station each; a further one is another instrument");
+}
+
+/// A word in names of parameters and columns: what ends one there is refused.
+std::string read_instrument_name(const Value& value) {
+  const std::string name = value.exact_name().value;
+  if (name.find_first_of(".@,;\"'[]#") != std::string::npos)
+    value.fail("is " + in_quotes(name), "a name without any of . @ , ; \" ' [ ] # is expected");
+  return name;
+}
+
+InstrumentList read_instruments(const Value& value) {
+  InstrumentList list;
+  for (const Value& item : value.items("a list of instruments is expected")) {
+    const Section section(item);
+    const Value& name = section.at("name");
+    MeasurementSpec instrument = read_instrument(section);
+    instrument.name = read_instrument_name(name);
+    for (const MeasurementSpec& other : list.instruments)
+      if (other.name == instrument.name)
+        name.fail("is " + in_quotes(instrument.name), "another instrument of the list has this name");
+    require_fits_list(section, instrument);
+    list.instruments.push_back(std::move(instrument));
+  }
+  if (list.instruments.empty()) value.fail("is empty", "at least one instrument is needed");
+  return list;
+}
+
+}  // namespace
+
+MeasurementSpec read_measurement(const Value& value) {
+  MeasurementSpec measurement;
+  if (!value.is_list()) {
+    const Section section(value);
+    measurement = read_instrument(section);
+    // There is nothing to tell it from.
+    if (const Value* name = section.find("name")) read_instrument_name(*name);
+    return measurement;
+  }
+  measurement.line = value.line();
+  measurement.instrument = read_instruments(value);
   return measurement;
 }
 

@@ -4,6 +4,7 @@
 
 #include "explicit_rows.hpp"
 #include "posewright/model/explicit_model.hpp"
+#include "posewright/model/instrument_choice.hpp"
 #include "posewright/model/load_difference.hpp"
 
 namespace posewright {
@@ -31,7 +32,8 @@ std::unique_ptr<HarmonicRows> harmonic_expansion(const IdentificationModel& mode
   if (const auto* of_a_tip = dynamic_cast<const ExplicitModel*>(&model))
     return explicit_rows(of_a_tip->tip(), of_a_tip->measurement(), of_a_tip->repeatability(),
                          of_a_tip->tip_parameters(), model.nominal_point(q), selected, why_not);
-  if (model.tips() > 1) why_not = "readings of two configurations at a time, which have twice as many joints";
+  if (dynamic_cast<const InstrumentChoice*>(&model) != nullptr) why_not = "a list of instruments";
+  else if (model.tips() > 1) why_not = "readings of two configurations at a time, which have twice as many joints";
   else if (!model.actuators().empty()) why_not = "sensors in the joints of a parallel robot";
   else why_not = "readings that are not of one tip alone";
   return nullptr;

@@ -110,19 +110,36 @@ Json test_json(const TestResult& test) {
   return {{"statistic", test.statistic}, {"probability", test.probability}};
 }
 
+Json summary_json(const ResidualSummary& k) {
+  return {{"kind", k.kind}, {"count", k.count},     {"rms", k.rms},
+          {"mean", k.mean}, {"largest", k.largest}, {"largest_at_pose", k.pose}};
+}
+
 Json residuals_json(const Calibration& c) {
   Json sets = Json::array();
   for (const ResidualSet& set : c.residuals)
-    for (const ResidualSummary& k : set.kinds)
-      sets.push_back({{"poses", set.poses},
-                      {"parameters", set.parameters},
-                      {"kind", k.kind},
-                      {"count", k.count},
-                      {"rms", k.rms},
-                      {"mean", k.mean},
-                      {"largest", k.largest},
-                      {"largest_at_pose", k.pose}});
+    for (const ResidualSummary& k : set.kinds) {
+      sets.push_back({{"poses", set.poses}, {"parameters", set.parameters}});
+      sets.back().update(summary_json(k));
+    }
   return sets;
+}
+
+/// Null for one instrument alone.
+Json instruments_json(const Calibration& c) {
+  Json list = nullptr;
+  for (const InstrumentResiduals& one : c.instruments) {
+    Json kinds = Json::array();
+    for (const ResidualSummary& k : one.kinds) kinds.push_back(summary_json(k));
+    list.push_back({{"name", one.name},
+                    {"poses", one.poses},
+                    {"readings", one.readings},
+                    {"chi_square", one.chi_square},
+                    {"freedom", one.test.possible ? Json(one.freedom) : Json(nullptr)},
+                    {"probability", one.test.possible ? Json(one.test.probability) : Json(nullptr)},
+                    {"residuals", kinds}});
+  }
+  return list;
 }
 
 Json orientations_json(const Calibration& c) {
@@ -217,6 +234,7 @@ Json figures_json(const Calibration& c) {
           {"intrinsic_curvature", finite_or_null(c.curvature.intrinsic)},
           {"histogram", {{"from", -4.5}, {"bin_width", 0.5}, {"counts", c.tests.histogram}}},
           {"residuals", residuals_json(c)},
+          {"instruments", instruments_json(c)},
           {"axes", axes_json(c)},
           {"requirements", requirements_json(c)},
           {"in_steps", steps_json(c)},

@@ -132,6 +132,23 @@ std::string residuals_text(const Calibration& c) {
   return text;
 }
 
+std::string instruments_text(const Calibration& c) {
+  if (c.instruments.empty()) return "";
+  Table table({"instrument", "poses", "readings", "RMS", "times the stated noise", "p"},
+              {Align::left, Align::right, Align::right, Align::left, Align::right, Align::right});
+  for (const InstrumentResiduals& one : c.instruments) {
+    std::string rms;
+    for (const ResidualSummary& k : one.kinds)
+      if (k.kind != "distance") rms += (rms.empty() ? "" : ", ") + shown_value(k.rms, k.kind);
+    table.row({one.name, std::to_string(one.poses), std::to_string(one.readings), rms,
+               one.test.possible ? fmt::format("{:.3g}", std::sqrt(one.chi_square / one.freedom)) : "",
+               !one.test.possible            ? ""
+               : one.test.probability < 1e-6 ? "below 1e-6"
+                                             : fmt::format("{:.2g}", one.test.probability)});
+  }
+  return "\nInstruments\n" + table.text();
+}
+
 std::string histogram_text(const std::vector<int>& counts) {
   const int most = std::max(1, *std::max_element(counts.begin(), counts.end()));
   std::string text = "\nStandardised residuals\n";
@@ -227,10 +244,10 @@ std::string chance_text(double probability) {
 std::string calibration_text(const Calibration& c) {
   return headline(c) + (c.expected ? expected_error_text(*c.expected) : "") + "\n" + frames_text(c) +
          parameters_text(c) + (c.compensator ? compensator_text(*c.compensator) : "") +
-         (c.platform ? platform_text(*c.platform) : "") + steps_text(c) + residuals_text(c) + axes_text(c) +
-         requirements_text(c) + predicted_poses_text(c) + histogram_text(c.tests.histogram) + noise_text(c) +
-         whiteness_text(c) + revisits_text(c) + effects_text(c) + left_out_text(c) + not_in_auto_text(c) +
-         outliers_text(c) + "Verdict: " + verdict_word(c.verdict) + ".\n";
+         (c.platform ? platform_text(*c.platform) : "") + steps_text(c) + residuals_text(c) + instruments_text(c) +
+         axes_text(c) + requirements_text(c) + predicted_poses_text(c) + histogram_text(c.tests.histogram) +
+         noise_text(c) + whiteness_text(c) + revisits_text(c) + effects_text(c) + left_out_text(c) +
+         not_in_auto_text(c) + outliers_text(c) + "Verdict: " + verdict_word(c.verdict) + ".\n";
 }
 
 }  // namespace posewright

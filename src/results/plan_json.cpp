@@ -65,6 +65,22 @@ Json variants_json(const Plan& plan) {
   return json;
 }
 
+Json instruments_json(const Plan& plan) {
+  Json json = Json::array();
+  for (const InstrumentWorth& worth : plan.instruments) {
+    Json sigmas = nullptr;
+    for (const auto& [name, sigma] : worth.sigma_without) sigmas[name] = sigma;
+    json.push_back({{"name", worth.name},
+                    {"poses", worth.poses},
+                    {"share", worth.share},
+                    {"efficiency_without", worth.without},
+                    {"sigma_without", sigmas},
+                    {"expected_error_without",
+                     worth.expected_without ? expected_error_json(*worth.expected_without) : Json(nullptr)}});
+  }
+  return json;
+}
+
 Json curve_json(const Plan& plan) {
   Json json = Json::array();
   for (const CurvePoint& point : plan.curve) {
@@ -256,6 +272,10 @@ std::string plan_json(const Plan& plan, const std::vector<WrittenWith>& files) {
   if (plan.unmodelled) json["unmodelled"] = unmodelled_json(*plan.unmodelled);
   if (plan.expected) json["expected_error"] = expected_error_json(*plan.expected);
   if (!plan.variants.empty()) json["variants"] = variants_json(plan);
+  if (!plan.instruments.empty()) {
+    json["instruments"] = instruments_json(plan);
+    json["prior_share"] = plan.prior_share;
+  }
   if (!plan.curve.empty()) json["curve"] = curve_json(plan);
   json["parameters"] = Json::array();
   for (const PlannedParameter& p : plan.parameters) json["parameters"].push_back(parameter_json(p));

@@ -96,6 +96,19 @@ std::string variants_text(const Plan& plan) {
   return table.text();
 }
 
+std::string instruments_text(const Plan& plan) {
+  if (plan.instruments.empty()) return {};
+  using A = Table::Align;
+  Table table({"instrument", "poses", "share of the information", "left without it", "error to expect without it"},
+              {A::left, A::right, A::right, A::right, A::right});
+  for (const InstrumentWorth& worth : plan.instruments)
+    table.row({worth.name, std::to_string(worth.poses), percent(worth.share),
+               worth.without > 0 ? percent(worth.without) : "not identifiable",
+               worth.expected_without ? shown_value(worth.expected_without->usual().error, "m") : "-"});
+  if (plan.prior_share > 0) table.row({"known before", "", percent(plan.prior_share), "", ""});
+  return table.text();
+}
+
 std::string curve_text(const Plan& plan) {
   if (plan.curve.empty()) return {};
   using A = Table::Align;
@@ -337,8 +350,8 @@ std::string search_text(const Plan& plan) {
 std::string plan_summary(const Plan& plan) {
   return headline(plan) + accuracy_text(plan) + certificate_text(plan) + robust_text(plan) + reserve_text(plan) +
          (plan.discrimination ? discrimination_text(*plan.discrimination, plan.variant) : "") + variants_text(plan) +
-         curve_text(plan) + "\n" + parameter_table(plan) + dropped_text(plan) + "\n" + candidates_text(plan) +
-         stages_text(plan) + indices_text(plan) + search_text(plan);
+         instruments_text(plan) + curve_text(plan) + "\n" + parameter_table(plan) + dropped_text(plan) + "\n" +
+         candidates_text(plan) + stages_text(plan) + indices_text(plan) + search_text(plan);
 }
 
 }  // namespace posewright

@@ -1,5 +1,7 @@
 #include "posewright/search/design_measure.hpp"
 
+#include <numeric>
+
 #include "posewright/criterion/information_function.hpp"
 #include "posewright/support/dense.hpp"
 
@@ -37,6 +39,22 @@ std::vector<double> DesignMeasure::phi_without(const std::vector<SearchPart>& po
     const auto rows = J.middleRows(Eigen::Index(i) * each.rows(), each.rows());
     result.push_back(criterion_->function().value(whole - rows.transpose() * rows) + offset_);
   }
+  return result;
+}
+
+std::vector<double> DesignMeasure::shares(const std::vector<SearchPart>& poses, const std::vector<int>& group,
+                                          int groups) const {
+  const BlockArray each = side_by_side(poses);
+  const BlockArray::RowMatrix J = whitened(each);
+  const Eigen::MatrixXd S = criterion_->function().gradient(information(each));
+  std::vector<double> result(std::size_t(groups) + 1, 0.0);
+  for (std::size_t i = 0; i < each.count(); ++i) {
+    const auto rows = J.middleRows(Eigen::Index(i) * each.rows(), each.rows());
+    result[std::size_t(group[i])] += (rows * S).cwiseProduct(rows).sum();
+  }
+  if (prior_.size() > 0) result.back() = prior_.cwiseProduct(S).sum();
+  const double all = std::accumulate(result.begin(), result.end(), 0.0);
+  for (double& share : result) share /= all;
   return result;
 }
 

@@ -1,5 +1,7 @@
 #include "posewright/study/study.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <numeric>
 
@@ -8,6 +10,7 @@
 #include "listed_candidates.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/model/elastic_chain.hpp"
+#include "posewright/model/instrument_choice.hpp"
 #include "posewright/study/accuracy_points.hpp"
 #include "posewright/study/discrepancy.hpp"
 #include "posewright/study/pose_distance.hpp"
@@ -83,6 +86,23 @@ void resolve_variant(const Study& study, Variant& variant) {
   fill_prior(study, variant);
 }
 
+/// Of a list, every instrument must read at some of the candidates that were drawn.
+void require_every_instrument(const Study& study) {
+  const std::vector<MeasurementSpec>* instruments = instruments_of(study.problem->measurement);
+  if (instruments == nullptr || !study.list.empty()) return;
+  const std::vector<Coordinate>& coordinates = study.first().model->coordinates();
+  for (const MeasurementSpec& instrument : *instruments) {
+    std::size_t i = 0;
+    while (i < study.configurations.count() &&
+           &instrument_at(study.problem->measurement, coordinates, study.configurations[i]) != &instrument)
+      ++i;
+    if (i < study.configurations.count()) continue;
+    const std::string& reason = study.first().model->unmeasurable_reason();
+    throw CannotDo(fmt::format("measurement: instrument '{}' reads at none of the {} candidates{}", instrument.name,
+                               study.configurations.count(), reason.empty() ? "" : " (" + reason + ")"));
+  }
+}
+
 /// Takes away candidates that repeat a measured or fixed pose or are nearer to one than the minimum distance, where the
 /// policy forbids it. Throws CannotDo if none is left.
 void keep_away_from_known(Study& study) {
@@ -95,6 +115,7 @@ void keep_away_from_known(Study& study) {
 }
 
 Study with_candidates(Study study, Unidentifiable unidentifiable) {
+  require_every_instrument(study);
   for (Variant& variant : study.variants) {
     try {
       resolve_variant(study, variant);

@@ -52,7 +52,6 @@ Variant place_variant(const ProblemVariant& of, const std::shared_ptr<const Cell
       throw std::logic_error("targets of the instrument and of the line of sight differ");
     variant.model->set_visibility({cell, cell->sight.get()});
   }
-  variant.repeatability = of.problem.measurement.repeatability;
   variant.workspace = std::make_unique<Workspace>(*variant.model, of.problem, cell, monitor, robots_to_read(variant));
   return variant;
 }

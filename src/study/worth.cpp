@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "posewright/model/instrument_choice.hpp"
 #include "posewright/study/accuracy_points.hpp"
 #include "posewright/study/unmodelled.hpp"
 #include "posewright/support/dense.hpp"
@@ -13,8 +14,13 @@ Eigen::MatrixXd covariance_by_visits(const Variant& variant, const EffectFeature
                                      const Configurations& configurations, const Eigen::MatrixXd& F,
                                      const BlockArray& whitened, const Eigen::MatrixXd& V, int threads) {
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(V.rows(), V.cols());
-  const Repeatability& visit = variant.repeatability;
-  if (!(visit.translation > 0) && !(visit.rotation > 0)) return result;
+  const auto visit_at = [&](std::size_t i) -> const Repeatability& {
+    return instrument_at(variant.problem->measurement, variant.model->coordinates(), configurations[i]).repeatability;
+  };
+  bool moved = false;
+  for (std::size_t i = 0; i < configurations.count(); ++i)
+    moved = moved || visit_at(i).translation > 0 || visit_at(i).rotation > 0;
+  if (!moved) return result;
   constexpr int twists = 6;
   std::vector<int> tips;
   for (int tip = 0; tip < variant.model->tips(); ++tip)
@@ -25,6 +31,7 @@ Eigen::MatrixXd covariance_by_visits(const Variant& variant, const EffectFeature
   const auto rows = Eigen::Index(whitened.rows());
   for (std::size_t i = 0; i < blocks.count(); ++i) {
     Eigen::MatrixXd A = blocks.block(i).rightCols(Eigen::Index(tips.size()));
+    const Repeatability& visit = visit_at(i);
     for (Eigen::Index c = 0; c < A.cols(); ++c) A.col(c) *= c % twists < 3 ? visit.translation : visit.rotation;
     const Eigen::MatrixXd answers = V * (twice.middleRows(Eigen::Index(i) * rows, rows).transpose() * A);
     result.noalias() += answers * answers.transpose();

@@ -66,6 +66,7 @@ class ListEvaluation {
     plan.criterion_value = find_criterion(study_.criterion)->shown(phi, judgement.evaluations.front().indices);
     fill_variants(plan, judgement, study_, references);
     fill_poses(plan, study_, poses_, {}, without_each(phi), judgement);
+    fill_instruments(plan, study_, poses_, *measure_, phi, degree_);
     fill_candidates(plan.statistics, study_);
     const bool stopped = monitor_.should_stop();
     if (study_.robust && !stopped) plan.robust = judge_robust_list(study_, pool_, in_pool_, monitor_);

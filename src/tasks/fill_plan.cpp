@@ -4,7 +4,10 @@
 #include <cmath>
 
 #include "posewright/criterion/registry.hpp"
+#include "posewright/model/instrument_choice.hpp"
 #include "posewright/problem/design_words.hpp"
+#include "posewright/study/expected_error.hpp"
+#include "posewright/support/error.hpp"
 #include "posewright/support/table.hpp"
 
 namespace posewright {
@@ -211,6 +214,108 @@ void fill_poses(Plan& plan, const Study& study, const Configurations& chosen, co
   }
   plan.statistics.poses_on_boundary = on_boundary / double(chosen.count());
   plan.statistics.coordinates_on_limits = on_limits / double(chosen.count());
+}
+
+namespace {
+
+/// Nuisance columns that only this instrument's readings depend on.
+std::vector<int> own_nuisance(const Variant& variant, const std::string& instrument) {
+  std::vector<int> own;
+  for (int j = 0; j < variant.columns.nuisance; ++j)
+    if (variant.columns.parameters[std::size_t(j)].name.find("@" + instrument + ".") != std::string::npos)
+      own.push_back(j);
+  return own;
+}
+
+/// The blocks, and rows that tell these columns by their tolerances.
+/// @param first  column of the variant's first parameter
+BlockArray with_told(const BlockArray& blocks, const Variant& variant, const std::vector<int>& told, int first,
+                     std::size_t more) {
+  BlockArray all(blocks.count() + more, blocks.rows(), blocks.columns());
+  for (std::size_t i = 0; i < blocks.count(); ++i) all.block(i) = blocks.block(i);
+  const auto rows = std::size_t(blocks.rows());
+  for (std::size_t k = 0; k < told.size(); ++k)
+    all.block(blocks.count() + k / rows)(Eigen::Index(k % rows), first + told[k]) =
+        1 / variant.columns.parameters[std::size_t(told[k])].tolerance;
+  return all;
+}
+
+/// Φ of the poses if the instrument's own nuisance parameters are known: without its readings nothing depends on them.
+double phi_without(const DesignMeasure& measure, const Study& study, const Configurations& left,
+                   const std::string& instrument) {
+  std::vector<SearchPart> parts = search_parts(study, study.criterion, left, study.planner.threads);
+  std::size_t more = 0;
+  for (std::size_t v = 0; v < parts.size(); ++v) {
+    const auto rows = std::size_t(parts[v].blocks.rows());
+    more = std::max(more, (own_nuisance(study.variants[v], instrument).size() + rows - 1) / rows);
+  }
+  for (std::size_t v = 0; v < parts.size(); ++v) {
+    const Variant& variant = study.variants[v];
+    const int features = variant.features == nullptr ? 0 : variant.features->columns();
+    parts[v].blocks = with_told(parts[v].blocks, variant, own_nuisance(variant, instrument), features, more);
+  }
+  return measure.phi(parts);
+}
+
+/// Covariance of the first variant's parameters, with the same known.
+Evaluation evaluation_without(const Study& study, const Configurations& poses, const std::string& instrument) {
+  const Variant& variant = study.first();
+  if (variant.effect != nullptr) return judge(study, poses).evaluations.front();
+  const BlockArray blocks =
+      build_blocks(*variant.model, variant.columns.selected, with_measured(study, poses), study.planner.threads);
+  const std::vector<int> told = own_nuisance(variant, instrument);
+  return evaluate(
+      with_told(blocks, variant, told, 0, (told.size() + std::size_t(blocks.rows()) - 1) / std::size_t(blocks.rows())),
+      variant.columns.parameters, study.prior ? Prior::every : Prior::none, variant.scale);
+}
+
+/// The rest of the plan as it would be without one instrument's poses; 0 efficiency where it leaves parameters open.
+void fill_without(InstrumentWorth& worth, const Study& study, const Configurations& left, const DesignMeasure& measure,
+                  double phi, double degree) {
+  Configurations all = study.fixed;
+  all.dimension = left.dimension;
+  all.values.insert(all.values.end(), left.values.begin(), left.values.end());
+  const bool any = all.count() + study.measured.count() > 0;
+  if (!any && !study.prior) return;
+  try {
+    const Evaluation evaluation = evaluation_without(study, all, worth.name);
+    worth.without = std::min(1.0, std::exp((phi_without(measure, study, left, worth.name) - phi) / degree));
+    const VariantColumns& columns = study.first().columns;
+    const std::vector<int> own = own_nuisance(study.first(), worth.name);
+    for (int j = 0; j < int(columns.parameters.size()); ++j)
+      if (!std::binary_search(own.begin(), own.end(), j))
+        worth.sigma_without.emplace_back(columns.parameters[std::size_t(j)].name, evaluation.sigma[j]);
+    if (any)
+      worth.expected_without = expected_error(study.configurations, study.first(), with_measured(study, all),
+                                              evaluation.covariance, study.planner.threads);
+  } catch (const CannotDo&) {
+    worth.without = 0.0;
+  }
+}
+
+}  // namespace
+
+void fill_instruments(Plan& plan, const Study& study, const Configurations& chosen, const DesignMeasure& measure,
+                      double phi, double degree) {
+  const MeasurementSpec& measurement = study.problem->measurement;
+  const std::vector<MeasurementSpec>* instruments = instruments_of(measurement);
+  if (instruments == nullptr || chosen.count() == 0) return;
+  std::vector<int> reads;
+  for (std::size_t i = 0; i < chosen.count(); ++i)
+    reads.push_back(
+        int(&instrument_at(measurement, study.first().model->coordinates(), chosen[i]) - instruments->data()));
+  const std::vector<double> shares = measure.shares(search_parts(study, study.criterion, chosen, study.planner.threads),
+                                                    reads, int(instruments->size()));
+  plan.prior_share = shares.back();
+  for (int k = 0; k < int(instruments->size()); ++k) {
+    InstrumentWorth worth{(*instruments)[std::size_t(k)].name, 0, shares[std::size_t(k)]};
+    std::vector<int> own;
+    for (int i = 0; i < int(reads.size()); ++i)
+      if (reads[std::size_t(i)] == k) own.push_back(i);
+    worth.poses = int(own.size());
+    fill_without(worth, study, without(chosen, own), measure, phi, degree > 0 ? degree : 1.0);
+    plan.instruments.push_back(std::move(worth));
+  }
 }
 
 }  // namespace posewright

@@ -21,6 +21,13 @@ void fill_variants(Plan& plan, const Judgement& judgement, const Study& study, c
 void fill_poses(Plan& plan, const Study& study, const Configurations& chosen, const std::vector<int>& members,
                 const std::vector<double>& without, const Judgement& judgement);
 
+/// What each instrument of a list gives; nothing where there is one alone. Measured and fixed poses count as known
+/// before, as tolerances do.
+/// @param chosen  that come to these
+/// @param phi     Φ of them by `measure`; efficiencies are e^{ΔΦ/degree}
+void fill_instruments(Plan& plan, const Study& study, const Configurations& chosen, const DesignMeasure& measure,
+                      double phi, double degree);
+
 /// The criterion that a plan is for, with what the outputs must know of it.
 void name_criterion(Plan& plan, const std::string& name);
 

@@ -195,6 +195,7 @@ class PlanSearch {
     if (!study_.first().nuisance_counts) fill_variants(plan, judgement, study_, found.references);
     fill_poses(plan, study_, chosen, found.design.members, found.without, judgement);
     fill_without_fixed(plan, chosen, found, phi);
+    fill_instruments(plan, study_, chosen, *found.measure, phi, found.degree);
     fill_candidates(plan.statistics, study_);
     plan.statistics.notes = notes_;
     plan.statistics.cell = cell_notes(*study_.cell);

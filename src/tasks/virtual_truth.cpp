@@ -53,10 +53,12 @@ void require_unit_of_joints(const Measured& noise, const RobotSpec& robot) {
 }  // namespace
 
 Problem with_truth_noise(Problem problem, const TruthNoise& noise) {
-  Repeatability& repeatability = problem.measurement.repeatability;
-  // A length that is stated anew says how the tip stands off; what the problem says of its turning stays.
-  repeatability.translation = noise.repeatability.value_or(repeatability.translation);
-  repeatability.independent = noise.independent.value_or(0.0);
+  for_each_instrument(problem.measurement, [&](MeasurementSpec& instrument) {
+    Repeatability& repeatability = instrument.repeatability;
+    // A length that is stated anew says how the tip stands off; what the problem says of its turning stays.
+    repeatability.translation = noise.repeatability.value_or(repeatability.translation);
+    repeatability.independent = noise.independent.value_or(0.0);
+  });
   if (noise.joints) {
     require_unit_of_joints(*noise.joints, problem.robot);
     set_joint_noise(problem.robot, noise.joints->value);

@@ -135,7 +135,8 @@ INSTANTIATE_TEST_SUITE_P(Examples, GradientOf,
                          testing::Values("kr270/problem.yaml", "kr270/elastostatic.yaml", "kr270/compensator.yaml",
                                          "telescope/within_stroke.yaml", "gough/problem.yaml", "delta/problem.yaml",
                                          "instruments/cables.yaml", "instruments/camera_on_hand.yaml",
-                                         "instruments/photogrammetry.yaml", "instruments/tracker_two_stations.yaml"),
+                                         "instruments/photogrammetry.yaml", "instruments/tracker_two_stations.yaml",
+                                         "instruments/tracker_and_camera.yaml"),
                          [](const auto& example_file) { return test_name(example_file.param); });
 
 MeasurementSpec tracker() {

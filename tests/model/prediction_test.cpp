@@ -50,7 +50,9 @@ double worst_column(const IdentificationModel& model, const std::vector<double>&
     correction[std::size_t(i)] = kept;
     model.difference(ahead, behind, change);
     const Eigen::VectorXd column = at.G.col(i).cwiseQuotient(noise);
-    const Eigen::VectorXd numeric = change.cwiseQuotient(noise) / (2 * h);
+    // What nobody reads is not told and does not change.
+    const Eigen::VectorXd told = change.array().isNaN().select(0.0, change);
+    const Eigen::VectorXd numeric = told.cwiseQuotient(noise) / (2 * h);
     // What changes no reading by a hundredth of its noise over ten tolerances is rounding.
     const double floor = 1e-3 / model.parameters()[std::size_t(i)].tolerance;
     worst = std::max(worst, (column - numeric).norm() / (column.norm() + floor));

@@ -48,6 +48,28 @@ TEST_P(BadInstrument, GivesOneClearLine) {
 constexpr const char* tracker_points = "{type: points, targets: {A: [0, 0, 0]}, device: ";
 
 const Bad bad_instruments[] = {
+    {"ListWithoutInstruments", "[]", "is empty; at least one instrument is needed"},
+    {"InstrumentWithoutName", "[{type: position, target: [0, 0, 0], device: {type: isotropic, noise: 1}}]",
+     "has no key 'name'; it is required"},
+    {"InstrumentsOfOneName",
+     "[{name: a, type: position, target: [0, 0, 0], device: {type: isotropic, noise: 1}}, {name: a, type: position, "
+     "target: [0, 0, 0], device: {type: isotropic, noise: 1}}]",
+     "is 'a'; another instrument of the list has this name"},
+    {"InstrumentNameWithADot", "[{name: a.b, type: position, target: [0, 0, 0], device: {type: isotropic, noise: 1}}]",
+     "is 'a.b'; a name without any of . @"},
+    {"JointSensorsInAList", "[{name: a, type: joints, device: {type: isotropic, noise: 1 mrad}}]",
+     "does not read where the tip is, and stands in a list of instruments; allowed there: pose"},
+    {"DistanceBetweenConfigurationsInAList",
+     "[{name: a, type: distance, between: configurations, targets: {T: [0, 0, 0]}, device: {type: isotropic, noise: "
+     "1}}]",
+     "does not read where the tip is"},
+    {"LoadDifferenceInAList",
+     "[{name: a, type: position, target: [0, 0, 0], load: loaded_minus_unloaded, device: {type: isotropic, noise: 1}}]",
+     "is loaded_minus_unloaded in a list of instruments; allowed there: absolute"},
+    {"StationsToChooseFromInAList",
+     "[{name: a, type: points, targets: {T: [0, 0, 0]}, device: {type: laser_tracker, stations: {A: [1, 0, 0], B: [2, "
+     "0, 0]}}}]",
+     "has several stations in a list of instruments; one station each"},
     {"NoTargets", "{type: points, targets: {}, device: {type: isotropic, noise: 1}}", "at least one target is needed"},
     {"CovarianceNotSymmetric",
      "{type: position, target: [0, 0, 0], device: {type: covariance, matrix: [[1, 0.5, 0], [0, 1, 0], [0, 0, 1]]}}",

@@ -13,13 +13,15 @@ namespace posewright {
 /// a key of their own come first, in the order of `choice_keys`.
 using PoseChoices = std::vector<std::pair<std::string, std::string>>;
 
-/// A choice with a key of its own in JSON, null without a label; other choices are keys of `conditions`. Coordinate of
-/// the model, column of a list, key and property in Python have the same name.
+/// A choice with a key of its own in JSON; other choices are keys of `conditions`. Coordinate of the model, column of a
+/// list, key and property in Python have the same name.
 struct ChoiceKey {
   const char* name;
-  const char* shown;  ///< in tables and programs
+  const char* shown;    ///< in tables and programs
+  bool always = false;  ///< the key is there without a label, too, as null
 };
-inline constexpr std::array<ChoiceKey, 2> choice_keys = {{{"load_case", "load case"}, {"station", "station"}}};
+inline constexpr std::array<ChoiceKey, 3> choice_keys = {
+    {{"load_case", "load case", true}, {"station", "station", true}, {"instrument", "instrument"}}};
 
 /// Row of `choice_keys`; null: the choice is a condition.
 inline const ChoiceKey* choice_key(std::string_view name) {

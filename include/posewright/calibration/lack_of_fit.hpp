@@ -21,10 +21,10 @@ struct RepeatedReadings {
 /// rows of V rests on s², so that the variance of its logarithm is φ² 2/ν: (f, ν/φ²) after Satterthwaite 1946.
 /// @param model       that was fitted: C
 /// @param instrument  without repeatability: E/n
-/// @param repeats     readings a pose that both count with
+/// @param measurement  says how many readings a pose both count with
 /// f is Fit::left. Not possible if nothing was read twice, without degrees of freedom, and for robust fits.
-TestResult lack_of_fit(const IdentificationModel& model, const IdentificationModel& instrument, int repeats,
-                       const std::vector<MeasuredPose>& poses, const std::vector<RepeatedReadings>& repeated,
-                       const Fit& result);
+TestResult lack_of_fit(const IdentificationModel& model, const IdentificationModel& instrument,
+                       const MeasurementSpec& measurement, const std::vector<MeasuredPose>& poses,
+                       const std::vector<RepeatedReadings>& repeated, const Fit& result);
 
 }  // namespace posewright

@@ -33,8 +33,9 @@ struct MeasuredData {
 /// are repeats and are averaged: their `reading_share` says of how many, against the problem's repeats. Without such
 /// rows every row is the mean of the problem's repeats. Actuators may stand for the coordinates of a parallel robot.
 /// Orientations as rotation vectors (pose.rx, …), unit quaternions (pose.qx, pose.qy, pose.qz, pose.qw) or three angles
-/// (OrientationColumns); photogrammetric points of a pose (NAME.x, …) become the pose by rigid fit. Joint centres of a
-/// platform (leg_1.x, …) beside its points make images of how it deforms. Throws InputError with file and line.
+/// (OrientationColumns), of a list's instrument as rotation vectors alone; photogrammetric points of a pose (NAME.x, …)
+/// become the pose by rigid fit. Joint centres of a platform (leg_1.x, …) beside its points make images of how it
+/// deforms. Throws InputError with file and line.
 MeasuredData read_measured_data(const std::filesystem::path& file, const Problem& problem,
                                 const IdentificationModel& model);
 /// Overload for text in memory; `file` names it in messages.

@@ -122,9 +122,9 @@ class IdentificationModel {
   const std::vector<Coordinate>& actuators() const { return actuators_; }
   /// Rows r of one configuration: the readings.
   int rows() const { return rows_; }
-  /// Readings at q: the rows of visible targets.
+  /// Readings at q: the rows of visible targets of the instrument that reads there.
   int visible_rows(std::span<const double> q) const;
-  /// Readings of targets that are hidden at q become NaN: nobody reads them.
+  /// Readings of targets that are hidden at q, and of instruments that do not read there, become NaN.
   void blank_hidden(std::span<const double> q, Eigen::VectorXd& y) const;
   /// Rows of one whitened block: fewer than rows() where many readings tell of few motions (a board in an image).
   int block_rows(std::span<const int> selected) const { return do_block_rows(selected); }
@@ -262,6 +262,8 @@ class IdentificationModel {
   virtual bool do_actuator_values(const Point& at, std::span<double> values) const;
   virtual Eigen::Isometry3d do_tool_pose(const Point& at) const = 0;
   virtual bool do_reading_twists(const Point& at, Eigen::Matrix<double, 6, Eigen::Dynamic>& twists) const;
+  /// Readings that nobody takes at q become NaN.
+  virtual void do_blank_unread(std::span<const double> q, Eigen::VectorXd& y) const;
   void hide(std::span<const double> q, Linearisation& out) const;
   bool settle(Point& at, std::vector<double>& scratch) const;
 

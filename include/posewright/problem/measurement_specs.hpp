@@ -86,8 +86,14 @@ struct JointsMeasurement {
   Quantity quantity = Quantity::number;       ///< quantity of its written unit; number: none, so SI
 };
 
-using InstrumentSpec =
-    std::variant<PoseMeasurement, PointsMeasurement, DistanceMeasurement, CameraMeasurement, JointsMeasurement>;
+struct MeasurementSpec;
+/// Several instruments: each pose is read by one of them.
+struct InstrumentList {
+  std::vector<MeasurementSpec> instruments;  ///< at least one, no two of a name
+};
+
+using InstrumentSpec = std::variant<PoseMeasurement, PointsMeasurement, DistanceMeasurement, CameraMeasurement,
+                                    JointsMeasurement, InstrumentList>;
 
 /// Repeatability, 1σ: a random displacement at every visit that averaging does not reduce. One displacement of
 /// the tip, common to all that is read during the visit.
@@ -99,13 +105,29 @@ struct Repeatability {
   double independent = 0.0;
 };
 
+/// Of a list, the other members are those of its instruments.
 struct MeasurementSpec {
   InstrumentSpec instrument;
-  int repeats = 1;  ///< readings averaged per configuration
+  std::string name;  ///< of an instrument of a list; else empty
+  int repeats = 1;   ///< readings averaged per configuration
   Repeatability repeatability;
   bool loaded_minus_unloaded = false;  ///< differences between each load case and the first one, at the same pose
   int line = 0;
 };
+
+/// The instruments of a list; null for one alone.
+inline const std::vector<MeasurementSpec>* instruments_of(const MeasurementSpec& measurement) {
+  const auto* list = std::get_if<InstrumentList>(&measurement.instrument);
+  return list == nullptr ? nullptr : &list->instruments;
+}
+
+/// Calls use(instrument) for every instrument of a list, or for the one that there is.
+template <class Use>
+void for_each_instrument(MeasurementSpec& measurement, const Use& use) {
+  if (auto* list = std::get_if<InstrumentList>(&measurement.instrument))
+    for (MeasurementSpec& instrument : list->instruments) use(instrument);
+  else use(measurement);
+}
 
 /// Mutable stations of its instrument; null for one without stations.
 std::vector<StationSpec>* stations_of(MeasurementSpec& measurement);

@@ -109,6 +109,10 @@ struct Problem : ProblemFile {
   std::optional<CalibratedParameters> parameters;
 };
 
+/// Throws InputError at a list of instruments.
+/// @param what  works with one alone: "a route"
+void require_one_instrument(const Problem& problem, const std::string& what);
+
 /// One variant of a problem: what a model is made of. Both must outlive it.
 struct ProblemVariant {
   const Problem& problem;

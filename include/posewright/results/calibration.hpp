@@ -13,6 +13,7 @@
 #include "posewright/calibration/fit.hpp"
 #include "posewright/calibration/frame_step.hpp"
 #include "posewright/calibration/in_steps.hpp"
+#include "posewright/calibration/instrument_residuals.hpp"
 #include "posewright/calibration/interpolation.hpp"
 #include "posewright/calibration/leave_out.hpp"
 #include "posewright/calibration/orientation.hpp"
@@ -126,8 +127,9 @@ struct Calibration {
   TestResult lack_of_fit;                        ///< posewright::lack_of_fit()
   Curvature curvature;
   std::vector<ResidualSet> residuals;
-  bool placed = false;                ///< there are residuals with base, tool and nuisance alone
-  std::vector<AxisImprovement> axes;  ///< of fitted poses, then of those held back
+  std::vector<InstrumentResiduals> instruments{};  ///< of a list, fitted poses
+  bool placed = false;                             ///< there are residuals with base, tool and nuisance alone
+  std::vector<AxisImprovement> axes;               ///< of fitted poses, then of those held back
   std::vector<JudgedRequirement> requirements;
   std::vector<PoseResidual> pose_residuals;
   std::optional<StepwiseFit> in_steps;

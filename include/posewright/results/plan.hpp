@@ -220,6 +220,18 @@ struct ExpectedError {
   const WithEffect& usual() const { return with[with.size() / 2]; }
 };
 
+/// What one instrument of a list gives a plan.
+struct InstrumentWorth {
+  std::string name;
+  int poses = 0;       ///< that it reads
+  double share = 0.0;  ///< tr(M_k ∂Φ/∂M) / tr(M ∂Φ/∂M), M_k its information; all shares and the prior's add to one
+  /// The plan without its poses: efficiency relative to the plan (0: the others leave parameters open), σ of the first
+  /// variant's parameters by name, error to expect.
+  double without = 0.0;
+  std::vector<std::pair<std::string, double>> sigma_without{};
+  std::optional<ExpectedError> expected_without{};
+};
+
 /// Efficiency of a plan, and of the plan for the nominal robot, on robots drawn from the tolerances.
 struct RobustPlan {
   int draws = 0;
@@ -273,6 +285,8 @@ struct Plan {
   std::optional<RobustPlan> robust{};            ///< if robots were drawn
   std::optional<ExpectedError> expected{};       ///< of the first variant, if its readings contain a tip
   std::vector<VariantResult> variants{};         ///< of a plan for several
+  std::vector<InstrumentWorth> instruments{};    ///< of a list
+  double prior_share = 0.0;                      ///< of the information, beside those of the instruments of a list
   std::vector<CurvePoint> curve{};               ///< of a plan of the smallest number of poses
   std::vector<PlannedParameter> parameters;      ///< interest first, then nuisance, then dropped ones
   std::vector<PlannedPose> poses;

@@ -25,6 +25,10 @@ class DesignMeasure {
   double phi(const std::vector<SearchPart>& parts) const;
   /// Φ of the poses without each of the known ones, whose information the prior holds.
   std::vector<double> phi_without(const std::vector<SearchPart>& poses, const std::vector<SearchPart>& known) const;
+  /// Shares of groups of poses in the information: tr(M_g S)/tr(M S), S = ∂Φ/∂M at M of all; the last is the prior's.
+  /// They add to one.
+  /// @param group  of each pose: 0, 1, … below `groups`
+  std::vector<double> shares(const std::vector<SearchPart>& poses, const std::vector<int>& group, int groups) const;
 
  private:
   BlockArray::RowMatrix whitened(const BlockArray& blocks) const;

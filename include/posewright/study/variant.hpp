@@ -35,7 +35,6 @@ struct Variant {
   std::vector<TestPlace> test_places{};              ///< of the same
   std::shared_ptr<const UnmodelledEffect> effect{};  ///< that the model lacks; null: none is stated
   std::shared_ptr<const EffectFeatures> features{};  ///< of it, among the candidates
-  Repeatability repeatability{};                     ///< of the problem's measurement
   /// Raw information known before of the columns of a search (tolerances, poses measured already, the size of an
   /// effect); empty: none.
   Eigen::MatrixXd prior{};

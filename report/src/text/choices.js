@@ -2,6 +2,7 @@
 const keys = [
   ['load_case', 'load case'],
   ['station', 'station'],
+  ['instrument', 'instrument'],
 ];
 
 /**

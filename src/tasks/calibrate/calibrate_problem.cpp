@@ -85,6 +85,7 @@ class CalibrationRun {
       result_.left_out = leave_out(*model_, columns_, fitted_, fit_options, placed_, result_.fit, monitor_);
     if (options_.interpolate) interpolate(fit_options);
     judge_noise();
+    judge_instruments();
     note_step();
     note_visits();
     judge_calibration({*model_, columns_, fitted_, held_back_, placed_}, result_);
@@ -385,9 +386,16 @@ class CalibrationRun {
   void judge_noise() {
     const Fit& fit = result_.fit;
     if (!repeated_.empty()) {
-      result_.lack_of_fit = lack_of_fit(*model_, *model_of(without_pose_errors(problem_)), problem_.measurement.repeats,
-                                        fitted_, repeated_, fit);
+      result_.lack_of_fit =
+          lack_of_fit(*model_, *model_of(without_pose_errors(problem_)), problem_.measurement, fitted_, repeated_, fit);
     }
+  }
+
+  /// A fit that counts an effect leaves readings by more than its estimate: their χ² has another mean then.
+  void judge_instruments() {
+    result_.instruments = instrument_residuals(*model_, columns_, fitted_, result_.fit);
+    if (result_.counted)
+      for (InstrumentResiduals& one : result_.instruments) one.test = {};
   }
 
   void fill_parameters() {

@@ -20,15 +20,16 @@ std::vector<std::filesystem::path> files_of(const CalibrateOptions& options) {
 }
 
 /// Rows that were averaged are the repeats, whatever the problem planned.
-void note_repeats(const MeasuredData& data, int planned, const std::string& before, std::vector<std::string>& notes) {
+void note_repeats(const MeasuredData& data, const MeasurementSpec& measurement, const std::string& before,
+                  std::vector<std::string>& notes) {
   if (data.repeated.empty()) return;
   if (!data.same_repeats)
     notes.push_back(fmt::format("{}poses have different numbers of readings (harmonic mean {:.3g}); each is averaged",
                                 before, data.repeats));
   // A mean of whole numbers, with the rounding of one.
-  else if (std::lround(data.repeats) != planned)
-    notes.push_back(
-        fmt::format("{}{:.0f} readings a pose are averaged, but the problem states {}", before, data.repeats, planned));
+  else if (instruments_of(measurement) == nullptr && std::lround(data.repeats) != measurement.repeats)
+    notes.push_back(fmt::format("{}{:.0f} readings a pose are averaged, but the problem states {}", before,
+                                data.repeats, measurement.repeats));
 }
 
 /// Standard deviation of every reading within poses of all files.
@@ -86,6 +87,7 @@ CalibrationData read_calibration_data(const Problem& problem, const CalibrateOpt
   CalibrationData all;
   const std::vector<std::filesystem::path> files = files_of(options);
   const bool several = files.size() > 1;
+  if (several) require_one_instrument(problem, "calibrate of several files");
   const auto of_campaign = [&](std::vector<double>& q, std::size_t campaign) {
     if (several) q.push_back(double(campaign));
   };
@@ -98,7 +100,7 @@ CalibrationData read_calibration_data(const Problem& problem, const CalibrateOpt
     if (f == 0) all.orientation = data.orientation;
     const std::string before = several ? files[f].string() + ": " : "";
     for (const std::string& note : data.notes) result.notes.push_back(before + note);
-    note_repeats(data, problem.measurement.repeats, before, result.notes);
+    note_repeats(data, problem.measurement, before, result.notes);
     result.rows += data.rows;
     poses += data.poses.size();
     inverse_repeats += double(data.poses.size()) / data.repeats;

@@ -288,6 +288,7 @@ class NextRun {
 }  // namespace
 
 NextPoses next_poses(const Problem& problem, const NextOptions& options, const Monitor& monitor) {
+  require_one_instrument(problem, "next");
   return NextRun(problem, options, monitor).run();
 }
 

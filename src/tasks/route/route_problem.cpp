@@ -432,6 +432,7 @@ Route route_problem(const Problem& problem, const PoseList& poses, const RouteOp
                     const Monitor& monitor) {
   const auto begin = std::chrono::steady_clock::now();
   require_at_most(poses, most_routed, "route orders");
+  require_one_instrument(problem, "a route");
   Route route = routed(problem, poses, options, monitor);
   PoseList list = poses;
   for (int round = 0; options.replace && round < most_rounds && !route.unreachable.empty() && !route.interrupted;

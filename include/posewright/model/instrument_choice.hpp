@@ -1,0 +1,68 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "posewright/model/explicit_model.hpp"
+#include "posewright/problem/measurement_specs.hpp"
+
+namespace posewright {
+
+/// Name of the coordinate that chooses among the instruments of a list.
+inline constexpr const char* instrument_coordinate = "instrument";
+
+/// One robot and several instruments, of which one reads at each pose: the discrete coordinate `instrument`, the last,
+/// says which. Parameters: the robot's, once, then each instrument's own, as "target@NAME.P1.x" (name_in()). Rows and
+/// readings are those of all instruments, one after the other ("NAME.P1.x"). Readings of those that do not read are
+/// NaN, their rows zero with unit noise, so that they tell nothing; and columns are zero where an instrument does not
+/// depend on a parameter (another one's, tool.* where targets stand for the tool).
+class InstrumentChoice : public IdentificationModel {
+ public:
+  /// @param models  robot and instrument each, of the same robot and at its nominal parameters
+  /// @param names   of the instruments, no two alike
+  InstrumentChoice(std::vector<std::unique_ptr<ExplicitModel>> models, const std::vector<std::string>& names);
+
+ private:
+  bool do_linearise(const Point& at, std::span<const int> selected, Linearisation& out) const override;
+  bool do_pull_back(const Point& at, std::span<const int> selected, const Eigen::MatrixXd& by_G,
+                    const Eigen::MatrixXd& by_covariance, std::span<double> gradient) const override;
+  bool do_read(const Point& at, Eigen::VectorXd& y) const override;
+  void do_difference(const Eigen::VectorXd& measured, const Eigen::VectorXd& predicted,
+                     Eigen::VectorXd& out) const override;
+  void do_shifted(const Eigen::VectorXd& predicted, const Eigen::VectorXd& change, Eigen::VectorXd& out) const override;
+  bool do_configuration_at(std::span<const double> actuators, const Point& start, std::span<double> q) const override;
+  void do_take_loads_at(std::span<const double> correction) override;
+  int do_block_rows(std::span<const int> selected) const override;
+  bool do_linearise_factored(const Point& at, std::span<const int> selected, Linearisation& out) const override;
+  bool do_measurable(const Point& at) const override;
+  bool do_actuator_values(const Point& at, std::span<double> values) const override;
+  Eigen::Isometry3d do_tool_pose(const Point& at) const override;
+  bool do_reading_twists(const Point& at, Twists& twists) const override;
+  void do_blank_unread(std::span<const double> q, Eigen::VectorXd& y) const override;
+
+  /// One instrument and where its own things are among all.
+  struct Part {
+    std::unique_ptr<ExplicitModel> model;
+    int first_row = 0, own = 0;  ///< `own`: index of its first own parameter
+  };
+  struct Inside;
+  const Part& part_at(std::span<const double> q) const { return parts_[std::size_t(q.back())]; }
+  std::vector<double> correction_of(const Part& part, std::span<const double> correction) const;
+  int index_in(const Part& part, int index) const;
+  Inside inside(const Point& at, std::span<const int> selected) const;
+  Point tip_point(const Part& part, const Point& at) const;
+  template <class Apply>
+  void segment_by_segment(const Eigen::VectorXd& a, const Eigen::VectorXd& b, Eigen::VectorXd& out,
+                          const Apply& apply) const;
+
+  std::vector<Part> parts_;
+};
+
+/// The instrument that reads at q: of a list the one that the coordinate `instrument` says, else the only one.
+const MeasurementSpec& instrument_at(const MeasurementSpec& measurement, const std::vector<Coordinate>& coordinates,
+                                     std::span<const double> q);
+
+}  // namespace posewright

@@ -1,0 +1,494 @@
+// A list of instruments from the problem file to plan, evaluation and calibration. The second roads: problems of one
+// instrument each, information summed by hand, least squares with kinematics and derivatives of their own.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <random>
+
+#include "posewright/blocks/block_array.hpp"
+#include "posewright/lists/measured_data.hpp"
+#include "posewright/lists/read_poses.hpp"
+#include "posewright/model/campaigns.hpp"
+#include "posewright/model/model_factory.hpp"
+#include "posewright/model/variant_columns.hpp"
+#include "posewright/model/whitening.hpp"
+#include "posewright/problem/read_problem.hpp"
+#include "posewright/study/variant.hpp"
+#include "posewright/support/error.hpp"
+#include "posewright/tasks/calibrate_problem.hpp"
+#include "posewright/tasks/evaluate_problem.hpp"
+#include "posewright/tasks/next_poses.hpp"
+#include "posewright/tasks/route_problem.hpp"
+#include "posewright/tasks/simulate_problem.hpp"
+#include "tests/kit/example_problems.hpp"
+#include "tests/kit/planar_arm.hpp"
+#include "tests/kit/recompute.hpp"
+#include "tests/kit/temporary_folder.hpp"
+#include "tests/kit/virtual_data.hpp"
+
+namespace posewright {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr const char* mixed_example = "instruments/tracker_and_camera.yaml";
+
+constexpr const char* planar_problem = R"(posewright: 1
+robot: {urdf: arm.urdf}
+measurement:
+  - {name: tracker, type: position, target: [0.05, 0.02, 0], components: [x, y], device: {type: isotropic, noise: 20 um}, repeatability: 30 um}
+  - {name: gauge, type: distance, targets: {T: [0.1, 0, 0]}, anchors: {A: [2, 1.5, 0]}, device: {type: isotropic, noise: 10 um}}
+variants:
+  arm: {parameters: [q1.offset, q2.offset, q2.x]}
+design: {criterion: o1, poses: 8, candidates: 300, restarts: 2, method: exchange}
+)";
+
+/// A planar arm in a folder of its own.
+struct Planar {
+  TemporaryFolder folder;
+  Problem problem;
+
+  explicit Planar(const std::string& text = planar_problem)
+      : problem((folder.write("arm.urdf", planar_arm_urdf), read_problem(folder.write("p.yaml", text)))) {}
+};
+
+std::string replaced_once(std::string text, const std::string& from, const std::string& to) {
+  return text.replace(text.find(from), from.size(), to);
+}
+
+template <class Call>
+std::string complaint_of(const Call& call) {
+  try {
+    call();
+    return "accepted";
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+}
+
+std::vector<int> every_parameter(const IdentificationModel& model) {
+  std::vector<int> all(model.parameters().size());
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+/// JᵀJ of one block, all parameters.
+Eigen::MatrixXd information_at(const IdentificationModel& model, const std::vector<double>& q) {
+  const std::vector<int> all = every_parameter(model);
+  BlockArray::RowMatrix J(model.block_rows(all), Eigen::Index(all.size()));
+  Linearisation scratch;
+  if (!whitened_block(model, q, {}, all, scratch, J.data(), int(J.cols()))) return {};
+  return J.transpose() * J;
+}
+
+TEST(InstrumentList, InformationIsTheSumOfThatOfItsInstruments) {
+  const Problem problem = example(mixed_example);
+  const std::vector<MeasurementSpec>& instruments = *instruments_of(problem.measurement);
+  const auto mixed = make_model(problem);
+  ASSERT_EQ(mixed->coordinates().back().labels, (std::vector<std::string>{"tracker", "camera"}));
+  // Eight readings a row of the board's 96 would make a block as high; six motions and the lens do not.
+  EXPECT_LT(mixed->block_rows(every_parameter(*mixed)), 32);
+  Random random(3, 1);
+  Eigen::MatrixXd whole =
+      Eigen::MatrixXd::Zero(Eigen::Index(mixed->parameters().size()), Eigen::Index(mixed->parameters().size()));
+  Eigen::MatrixXd sum = whole;
+  for (std::size_t k = 0; k < instruments.size(); ++k) {
+    Problem alone = problem;
+    alone.measurement = instruments[k];
+    alone.variants = {VariantSpec{}};
+    const auto model = make_model(alone);
+    std::vector<int> at;
+    for (const Parameter& p : model->parameters()) {
+      const bool of_robot = p.name.starts_with("base.") || p.name.starts_with("tool.") || p.name.starts_with("joint_");
+      const std::string name = of_robot ? p.name : name_in(instruments[k].name, p.name);
+      int i = 0;
+      while (i < int(mixed->parameters().size()) && mixed->parameters()[std::size_t(i)].name != name) ++i;
+      ASSERT_LT(i, int(mixed->parameters().size())) << name;
+      EXPECT_EQ(mixed->parameters()[std::size_t(i)].nominal, p.nominal);
+      EXPECT_EQ(mixed->parameters()[std::size_t(i)].tolerance, p.tolerance);
+      at.push_back(i);
+    }
+    for (int done = 0; done < 30;) {
+      std::vector<double> q = random_configuration(*mixed, random);
+      q.back() = double(k);
+      if (!mixed->measurable(q)) continue;
+      ++done;
+      std::vector<double> own(q.begin(), q.end() - 1);
+      own.resize(model->coordinates().size(), 0.0);
+      ASSERT_TRUE(model->measurable(own));
+      whole += information_at(*mixed, q);
+      sum(at, at) += information_at(*model, own);
+    }
+  }
+  Eigen::VectorXd unit = sum.diagonal().cwiseSqrt();
+  unit = (unit.array() > 0).select(unit, 1.0);
+  EXPECT_LT((whole - sum).cwiseQuotient(unit * unit.transpose()).cwiseAbs().maxCoeff(), 1e-11);
+}
+
+TEST(InstrumentList, LinearRowsAndFactoredRowsTellTheSame) {
+  const auto model = make_model(example(mixed_example));
+  const std::vector<int> all = every_parameter(*model);
+  ASSERT_LT(model->block_rows(all), model->rows());
+  Random random(5, 2);
+  Linearisation at;
+  for (int done = 0; done < 20;) {
+    const std::vector<double> q = random_configuration(*model, random);
+    if (!model->measurable(q)) continue;
+    ++done;
+    ASSERT_TRUE(model->linearise(q, {}, all, at));
+    const Eigen::MatrixXd plain = at.G.transpose() * at.covariance.ldlt().solve(at.G);
+    Eigen::VectorXd unit = plain.diagonal().cwiseSqrt();
+    unit = (unit.array() > 0).select(unit, 1.0);
+    EXPECT_LT((information_at(*model, q) - plain).cwiseQuotient(unit * unit.transpose()).cwiseAbs().maxCoeff(), 1e-9);
+  }
+}
+
+TEST(InstrumentList, APlanStatesTheInstrumentOfEveryPoseAndWhatEachGives) {
+  const Planar planar;
+  const Plan plan = plan_problem(planar.problem, {}, Monitor{});
+  ASSERT_EQ(plan.instruments.size(), 2U);
+  EXPECT_GT(plan.certificate.efficiency, 0.9);
+  ASSERT_TRUE(plan.certificate.proved);
+  // By the definition, from the written poses: log det M, so that S = M⁻¹.
+  const auto model = make_model(planar.problem);
+  const VariantColumns columns = select_columns(*model, {planar.problem, planar.problem.variants.front()});
+  std::vector<Eigen::Matrix3d> part(2, Eigen::Matrix3d::Zero());
+  std::vector<int> poses(2, 0);
+  Linearisation at;
+  for (const std::vector<double>& q : configurations_of(planar.problem, plan)) {
+    ASSERT_TRUE(model->linearise(q, {}, columns.selected, at));
+    part[std::size_t(q.back())] += at.G.transpose() * at.covariance.inverse() * at.G;
+    ++poses[std::size_t(q.back())];
+  }
+  const Eigen::Matrix3d M = part[0] + part[1];
+  double shares = plan.prior_share;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const InstrumentWorth& worth = plan.instruments[k];
+    EXPECT_EQ(worth.name, k == 0 ? "tracker" : "gauge");
+    EXPECT_EQ(worth.poses, poses[k]);
+    EXPECT_NEAR(worth.share, (part[k] * M.inverse()).trace() / 3, 1e-9);
+    shares += worth.share;
+    const Eigen::Matrix3d left = M - part[k];
+    EXPECT_NEAR(worth.without, std::pow(left.determinant() / M.determinant(), 1.0 / 3), 1e-7);
+    if (worth.without == 0) continue;
+    ASSERT_EQ(worth.sigma_without.size(), 3U);
+    for (Eigen::Index j = 0; j < 3; ++j)
+      EXPECT_NEAR(worth.sigma_without[std::size_t(j)].second, std::sqrt(left.inverse()(j, j)),
+                  1e-6 * worth.sigma_without[std::size_t(j)].second);
+  }
+  EXPECT_NEAR(shares, 1.0, 1e-12);
+  EXPECT_EQ(plan.prior_share, 0.0);
+
+  const nlohmann::json json = nlohmann::json::parse(plan_json(plan));
+  EXPECT_EQ(json["instruments"].size(), 2U);
+  EXPECT_THAT(json["poses"][0]["instrument"].get<std::string>(), testing::AnyOf("tracker", "gauge"));
+  EXPECT_THAT(plan_summary(plan), HasSubstr("left without it"));
+
+  // The list is read back with its instruments, and gives the same figures.
+  for (const char* file : {"plan.json", "poses.csv"}) {
+    const bool csv = std::string(file) == "poses.csv";
+    const PoseList list = read_poses(planar.folder.write(file, csv ? poses_csv(plan) : plan_json(plan)),
+                                     pose_coordinates(planar.problem));
+    const Plan again = evaluate_problem(planar.problem, list, {}, Monitor{}).plan;
+    EXPECT_EQ(again.log_det, plan.log_det);
+    ASSERT_EQ(again.instruments.size(), 2U);
+    for (std::size_t k = 0; k < 2; ++k) {
+      EXPECT_EQ(again.instruments[k].poses, plan.instruments[k].poses);
+      EXPECT_NEAR(again.instruments[k].share, plan.instruments[k].share, 1e-9);
+      EXPECT_NEAR(again.instruments[k].without, plan.instruments[k].without, 1e-9);
+    }
+  }
+}
+
+TEST(InstrumentList, SharesAndThePriorsAddToOneForEveryCriterion) {
+  for (const char* criterion : {"a", "o3", "o5", "test_pose"}) {
+    const Planar planar(
+        replaced_once(planar_problem, "criterion: o1",
+                      std::string("prior: tolerance, test_poses: {random: 20}, criterion: ") + criterion));
+    const Plan plan = plan_problem(planar.problem, {}, Monitor{});
+    ASSERT_EQ(plan.instruments.size(), 2U);
+    EXPECT_GT(plan.prior_share, 0) << criterion;
+    EXPECT_NEAR(plan.prior_share + plan.instruments[0].share + plan.instruments[1].share, 1, 1e-12) << criterion;
+    for (const InstrumentWorth& worth : plan.instruments) {
+      EXPECT_GT(worth.without, 0) << criterion << ": tolerances leave nothing open";
+      EXPECT_LE(worth.without, 1) << criterion;
+      EXPECT_EQ(worth.sigma_without.size(), 3U) << criterion;
+      EXPECT_EQ(worth.expected_without.has_value(), worth.poses < 8) << criterion << worth.name;
+    }
+  }
+}
+
+/// log det of the first columns' complement, columns that no row has left out.
+double log_det_of_interest(const Eigen::MatrixXd& M, int nuisance) {
+  std::vector<int> kept, kept_nuisance;
+  for (int j = 0; j < int(M.cols()); ++j)
+    if (M(j, j) > 0) {
+      kept.push_back(j);
+      if (j < nuisance) kept_nuisance.push_back(j);
+    }
+  const auto log_det = [&](const std::vector<int>& own) {
+    const Eigen::VectorXd unit = M.diagonal()(own).cwiseSqrt();
+    const Eigen::MatrixXd scaled = M(own, own).cwiseQuotient(unit * unit.transpose());
+    return scaled.ldlt().vectorD().array().log().sum() + 2 * unit.array().log().sum();
+  };
+  return log_det(kept) - log_det(kept_nuisance);
+}
+
+TEST(InstrumentList, WithoutAnInstrumentItsOwnNuisanceIsNotAskedFor) {
+  Problem problem = example(mixed_example);
+  VariantSpec& variant = problem.variants.front();
+  variant.automatic = false;
+  for (const char* name : {"joint_a2.offset", "joint_a3.offset", "joint_a4.offset", "joint_a5.offset"})
+    variant.parameters.push_back({name, 0});
+  problem.design.candidates.value = 300;
+  problem.design.method.value = "exchange";
+  const Plan plan = plan_problem(problem, {}, Monitor{});
+  const auto model = make_model(problem);
+  const VariantColumns columns = select_columns(*model, {problem, variant});
+  const auto m = Eigen::Index(columns.selected.size());
+  std::vector<Eigen::MatrixXd> part(2, Eigen::MatrixXd::Zero(m, m));
+  Linearisation at;
+  for (const std::vector<double>& q : configurations_of(problem, plan)) {
+    ASSERT_TRUE(model->linearise(q, {}, columns.selected, at));
+    part[std::size_t(q.back())] += at.G.transpose() * at.covariance.ldlt().solve(at.G);
+  }
+  const double whole = log_det_of_interest(part[0] + part[1], columns.nuisance);
+  ASSERT_EQ(plan.instruments.size(), 2U);
+  // The camera alone tells of base and board together only.
+  EXPECT_EQ(plan.instruments[0].without, 0);
+  EXPECT_TRUE(plan.instruments[0].sigma_without.empty());
+  const InstrumentWorth& camera = plan.instruments[1];
+  EXPECT_GT(camera.without, 0);
+  EXPECT_NEAR(camera.without, std::exp((log_det_of_interest(part[0], columns.nuisance) - whole) / 4), 1e-6);
+  EXPECT_TRUE(camera.expected_without.has_value());
+  EXPECT_EQ(int(camera.sigma_without.size()), int(m) - 12) << "all but those of camera and board";
+  for (const auto& [name, sigma] : camera.sigma_without) {
+    EXPECT_EQ(name.find("@camera."), std::string::npos);
+    for (const PlannedParameter& p : plan.parameters) {
+      if (p.label.name == name) {
+        EXPECT_GE(sigma, *p.sigma * (1 - 1e-9)) << name;
+      }
+    }
+  }
+}
+
+TEST(InstrumentList, PosesThatGainNothingWhileTheyAreTooFewAreFound) {
+  // Camera and board take three pictures; fewer tell the arm nothing, so no single exchange leads there.
+  Problem problem = example(mixed_example);
+  problem.design.candidates.value = 100;
+  problem.design.restarts.value = 1;
+  problem.design.method.value = "exchange";
+  const Plan plan = plan_problem(problem, {}, Monitor{});
+  EXPECT_GT(plan.certificate.efficiency, 0.7);
+  for (const InstrumentWorth& worth : plan.instruments) EXPECT_GT(worth.poses, 0) << worth.name;
+}
+
+TEST(InstrumentList, AnInstrumentThatSeesNothingIsNamed) {
+  Problem problem = example(mixed_example);
+  auto& camera =
+      std::get<CameraMeasurement>(std::get<InstrumentList>(problem.measurement.instrument).instruments[1].instrument);
+  camera.camera.rpy = -camera.camera.rpy;
+  problem.design.candidates.value = 100;
+  EXPECT_THAT(complaint_of([&] { plan_problem(problem, {}, Monitor{}); }),
+              HasSubstr("measurement: instrument 'camera' reads at none of the 100 candidates"));
+}
+
+/// Readings of a planar arm whose errors are known, by formulas of this test.
+class PlanarReadings {
+ public:
+  static Eigen::Vector2d point(const Eigen::Vector3d& x, double q1, double q2, const Eigen::Vector2d& on_tip) {
+    const Eigen::Vector2d reach = Eigen::Vector2d(0.8, 0) + on_tip;
+    return Eigen::Rotation2Dd(q1 + x[0]) * (Eigen::Vector2d(1 + x[2], 0) + Eigen::Rotation2Dd(q2 + x[1]) * reach);
+  }
+  /// Two rows of the tracker or one of the gauge, in units of their noise.
+  static Eigen::VectorXd rows(const Eigen::Vector3d& x, double q1, double q2, int instrument) {
+    if (instrument == 0) return point(x, q1, q2, {0.05, 0.02}) / std::hypot(20e-6, 30e-6);
+    return Eigen::VectorXd::Constant(1, (point(x, q1, q2, {0.1, 0}) - Eigen::Vector2d(2, 1.5)).norm() / 10e-6);
+  }
+
+  /// @param gauge_noise  in units of the stated one
+  explicit PlanarReadings(unsigned seed, double gauge_noise = 1.0) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal;
+    std::uniform_real_distribution<double> angle(-1.8, 1.8);
+    csv = "id,q1,q2,instrument,tracker.target.x [m],tracker.target.y [m],gauge.A-T [m]\n";
+    for (int i = 0; i < 60; ++i) {
+      q1.push_back(angle(random));
+      q2.push_back(angle(random));
+      instrument.push_back(i % 3 == 0 ? 0 : 1);
+      Eigen::VectorXd row = rows({2e-3, -1e-3, 4e-4}, q1.back(), q2.back(), instrument.back());
+      for (double& value : row) value += (instrument.back() == 0 ? 1.0 : gauge_noise) * normal(random);
+      z.push_back(row);
+      const auto cell = [](double value) { return std::to_string(value * 1e9) + "e-9"; };
+      csv += std::to_string(i + 1) + "," + cell(q1.back()) + "," + cell(q2.back());
+      if (instrument.back() == 0)
+        csv += ",tracker," + cell(row[0] * std::hypot(20e-6, 30e-6)) + "," + cell(row[1] * std::hypot(20e-6, 30e-6)) +
+               ",\n";
+      else csv += ",gauge,,," + cell(row[0] * 10e-6) + "\n";
+    }
+  }
+
+  /// Rows and their derivatives by central differences, one pose below the other.
+  void stack(const Eigen::Vector3d& x, Eigen::VectorXd& r, Eigen::MatrixXd& J, std::vector<int>& of) const {
+    std::vector<double> rs;
+    std::vector<Eigen::RowVector3d> Js;
+    of.clear();
+    for (std::size_t i = 0; i < q1.size(); ++i) {
+      const Eigen::VectorXd at = rows(x, q1[i], q2[i], instrument[i]);
+      Eigen::MatrixXd D(at.size(), 3);
+      for (int k = 0; k < 3; ++k) {
+        const Eigen::Vector3d h = 1e-6 * Eigen::Vector3d::Unit(k);
+        D.col(k) = (rows(x + h, q1[i], q2[i], instrument[i]) - rows(x - h, q1[i], q2[i], instrument[i])) / 2e-6;
+      }
+      for (Eigen::Index row = 0; row < at.size(); ++row) {
+        rs.push_back(z[i][row] - at[row]);
+        Js.emplace_back(D.row(row));
+        of.push_back(instrument[i]);
+      }
+    }
+    r = Eigen::Map<Eigen::VectorXd>(rs.data(), Eigen::Index(rs.size()));
+    J.resize(r.size(), 3);
+    for (Eigen::Index row = 0; row < r.size(); ++row) J.row(row) = Js[std::size_t(row)];
+  }
+
+  std::vector<double> q1, q2;
+  std::vector<int> instrument;
+  std::vector<Eigen::VectorXd> z;
+  std::string csv;
+};
+
+Calibration calibrated(const Planar& planar, const std::string& csv) {
+  CalibrateOptions options;
+  options.data = planar.folder.write("data.csv", csv);
+  options.prior = Prior::none;
+  return calibrate_problem(planar.problem, options, Monitor{});
+}
+
+TEST(InstrumentList, MixedDataGiveTheLeastSquaresOfAnotherRoad) {
+  const Planar planar;
+  const PlanarReadings data(4);
+  Eigen::Vector3d x = Eigen::Vector3d::Zero();
+  Eigen::VectorXd r;
+  Eigen::MatrixXd J;
+  std::vector<int> of;
+  for (int round = 0; round < 20; ++round) {
+    data.stack(x, r, J, of);
+    x += (J.transpose() * J).ldlt().solve(J.transpose() * r);
+  }
+  data.stack(x, r, J, of);
+  const Eigen::Matrix3d C = (J.transpose() * J).inverse();
+  const Eigen::MatrixXd left = Eigen::MatrixXd::Identity(r.size(), r.size()) - J * C * J.transpose();
+
+  const Calibration result = calibrated(planar, data.csv);
+  ASSERT_EQ(result.fit.noise_factor, 1.0);
+  ASSERT_EQ(result.parameters.size(), 3U);
+  for (int j = 0; j < 3; ++j) {
+    const CalibratedParameter& p = result.parameters[std::size_t(j)];
+    EXPECT_NEAR(p.value - p.label.nominal, x[j], 1e-4 * std::sqrt(C(j, j))) << p.label.name;
+    EXPECT_NEAR(p.sigma, std::sqrt(C(j, j)), 1e-6 * p.sigma) << p.label.name;
+  }
+  ASSERT_EQ(result.instruments.size(), 2U);
+  double chi_square = 0, freedom = 0;
+  for (int k = 0; k < 2; ++k) {
+    const InstrumentResiduals& one = result.instruments[std::size_t(k)];
+    double square = 0, trace = 0;
+    for (Eigen::Index row = 0; row < r.size(); ++row)
+      if (of[std::size_t(row)] == k) {
+        square += r[row] * r[row];
+        trace += left(row, row);
+      }
+    EXPECT_NEAR(one.chi_square, square, 1e-5 * square) << one.name;
+    EXPECT_NEAR(one.freedom, trace, 1e-6 * trace) << one.name;
+    EXPECT_EQ(one.poses, k == 0 ? 20 : 40);
+    EXPECT_EQ(one.readings, 40);
+    EXPECT_TRUE(one.test.possible);
+    EXPECT_GT(one.test.probability, 0.01);
+    chi_square += one.chi_square;
+    freedom += one.freedom;
+  }
+  EXPECT_NEAR(chi_square, result.fit.chi_square, 1e-9 * chi_square);
+  EXPECT_NEAR(freedom, result.fit.freedom, 1e-9 * freedom);
+  EXPECT_THAT(calibration_text(result), HasSubstr("times the stated noise"));
+}
+
+TEST(InstrumentList, AnInstrumentWhoseNoiseIsStatedWronglyShowsAlone) {
+  const Planar planar;
+  const Calibration result = calibrated(planar, PlanarReadings(7, 3.0).csv);
+  ASSERT_EQ(result.instruments.size(), 2U);
+  EXPECT_GT(result.instruments[0].test.probability, 0.01);
+  EXPECT_LT(result.instruments[1].test.probability, 1e-6);
+  EXPECT_NEAR(std::sqrt(result.instruments[1].chi_square / result.instruments[1].freedom), 3.0, 0.8);
+}
+
+TEST(InstrumentList, ProbabilitiesOfAnInstrumentAreEven) {
+  // Under right noise each p is as often below 0.1 as in a tenth of the draws.
+  const Planar planar;
+  std::array<int, 2> low{};
+  constexpr int draws = 60;
+  for (unsigned seed = 100; seed < 100 + draws; ++seed) {
+    CalibrateOptions options;
+    options.data = planar.folder.write("data.csv", PlanarReadings(seed).csv);
+    options.prior = Prior::none;
+    options.profile.choice = ProfileChoice::none;
+    const Calibration result = calibrate_problem(planar.problem, options, Monitor{});
+    for (std::size_t k = 0; k < 2; ++k) low[k] += result.instruments[k].test.probability < 0.1 ? 1 : 0;
+  }
+  for (const int count : low) EXPECT_NEAR(double(count) / draws, 0.1, 0.11);
+}
+
+TEST(InstrumentList, SimulationsCoverAndTheirReadingsAreReadBack) {
+  const Planar planar;
+  const Plan plan = plan_problem(planar.problem, {}, Monitor{});
+  const PoseList list = read_poses(planar.folder.write("plan.json", plan_json(plan)), pose_coordinates(planar.problem));
+  SimulateOptions options;
+  options.experiment.draws = 300;
+  const Simulation simulation = simulate_problem(planar.problem, list, options, Monitor{});
+  for (const SimulatedParameter& p : simulation.parameters) {
+    ASSERT_TRUE(p.errors.has_value());
+    EXPECT_NEAR(p.errors->observed / p.predicted, 1.0, 0.15) << p.label.name;
+    EXPECT_NEAR(p.errors->coverage, 0.95, 0.04) << p.label.name;
+  }
+  const auto model = make_model(planar.problem);
+  const MeasuredData back =
+      read_measured_data(planar.folder.write("data.csv", simulation.first_readings), planar.problem, *model);
+  ASSERT_EQ(back.poses.size(), plan.poses.size());
+  for (const MeasuredPose& pose : back.poses)
+    EXPECT_EQ(pose.y.array().isFinite().count(), pose.q.back() == 0 ? 2 : 1) << "of its own instrument alone";
+}
+
+TEST(InstrumentList, WrongDataAreOneLine) {
+  const Planar planar;
+  const std::string head = "id,q1,q2,instrument,tracker.target.x,tracker.target.y,gauge.A-T\n";
+  const auto complaint = [&](const std::string& rows) {
+    return complaint_of([&] { calibrated(planar, head + rows); });
+  };
+  EXPECT_THAT(complaint("1,0.1,0.2,tracker,1,0.5,\n2,0.3,0.2,laser,1,0.5,\n"),
+              testing::AllOf(HasSubstr("data.csv:3"), HasSubstr("laser"), HasSubstr("tracker")));
+  EXPECT_THAT(complaint("1,0.1,0.2,tracker,1,0.5,\n2,0.3,0.2,gauge,1,0.5,0.7\n"),
+              HasSubstr("data.csv:3: has a value of 'tracker.target.x' in a row of instrument 'gauge'"));
+  EXPECT_THAT(
+      complaint_of([&] { calibrated(planar, "id,q1,q2,tracker.target.x,tracker.target.y\n1,0.1,0.2,1,0.5\n"); }),
+      HasSubstr("instrument"));
+}
+
+TEST(InstrumentList, WhatIsForOneInstrumentRefusesAList) {
+  const Planar planar;
+  const std::string list = "p.yaml:3: measurement is a list of instruments; ";
+  EXPECT_THAT(complaint_of([&] { route_problem(planar.problem, {}, {}, Monitor{}); }), HasSubstr(list + "a route"));
+  EXPECT_THAT(complaint_of([&] { next_poses(planar.problem, {}, Monitor{}); }), HasSubstr(list + "next"));
+  CalibrateOptions options;
+  options.data = planar.folder.write("a.csv", PlanarReadings(1).csv);
+  options.campaigns = {planar.folder.write("b.csv", PlanarReadings(2).csv)};
+  options.moved = Moved::base;
+  EXPECT_THAT(complaint_of([&] { calibrate_problem(planar.problem, options, Monitor{}); }), HasSubstr(list));
+  const Planar seen(std::string(planar_problem) + "workspace: {line_of_sight: {range: [0.1, 5]}}\n");
+  EXPECT_THAT(complaint_of([&] { plan_problem(seen.problem, {}, Monitor{}); }),
+              HasSubstr(list + "workspace.line_of_sight"));
+}
+
+}  // namespace
+}  // namespace posewright

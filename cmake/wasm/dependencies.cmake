@@ -8,6 +8,8 @@ endif()
 enable_language(C)
 
 # One set of instructions for everything: SSE2's order of operations gives the figures of a processor; exceptions of the platform.
+# Eigen takes pointers of 32 bits for a processor of eight registers, and sums products in another order there.
+add_compile_definitions(EIGEN_ARCH_DEFAULT_NUMBER_OF_REGISTERS=16)
 add_compile_options(-msimd128 -msse2 -fwasm-exceptions -isystem ${CMAKE_CURRENT_LIST_DIR}/include)
 add_link_options(-fwasm-exceptions)
 set(CMAKE_POSITION_INDEPENDENT_CODE OFF)

@@ -1,4 +1,4 @@
-# The program as WebAssembly, linked twice from the same objects, to the same bytes and different JavaScript:
+# The program as WebAssembly, linked twice from the same objects, to the same bytes and different JavaScript, and optimised once:
 #   bin/posewright.js    for node: it sees the files of the system, and runs at once
 #   page/posewright.js   a module for pages: createPosewright() makes an instance with files in memory; callMain(words) runs it once
 function(posewright_wasm target folder)
@@ -7,7 +7,7 @@ function(posewright_wasm target folder)
     OUTPUT_NAME posewright RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/${folder} LINKER_LANGUAGE CXX)
   target_link_libraries(${target} PRIVATE posewright::posewright ${POSEWRIGHT_LIBRARIES} Boost::program_options)
   # Memory grows up to what 32 bits can address. Deep expressions and trees need the stack of a usual system.
-  target_link_options(${target} PRIVATE -O2 -sALLOW_MEMORY_GROWTH=1 -sMAXIMUM_MEMORY=4GB -sSTACK_SIZE=8MB ${ARGN})
+  target_link_options(${target} PRIVATE -O1 -sALLOW_MEMORY_GROWTH=1 -sMAXIMUM_MEMORY=4GB -sSTACK_SIZE=8MB ${ARGN})
 endfunction()
 
 posewright_wasm(posewright_program bin -sENVIRONMENT=node -sNODERAWFS=1 -sEXIT_RUNTIME=1 --pre-js ${CMAKE_CURRENT_LIST_DIR}/node.js)
@@ -28,8 +28,15 @@ foreach(licence IN LISTS licences)
   string(REGEX REPLACE "^(${wasm_sources}|/usr/share/doc)/" "" name ${licence})
   file(APPEND ${package}/LICENSES.txt "\n==== ${name}\n\n${text}")
 endforeach()
+# From -O2 on the linker would optimise each of both, for minutes.
+find_program(POSEWRIGHT_WASM_OPT wasm-opt REQUIRED)
 add_custom_command(TARGET posewright_program POST_BUILD
   COMMAND ${CMAKE_COMMAND} -E copy ${PROJECT_BINARY_DIR}/bin/posewright.js ${package}/posewright.cjs
-  COMMAND ${CMAKE_COMMAND} -E copy ${PROJECT_BINARY_DIR}/bin/posewright.wasm ${package}/posewright.wasm)
+  COMMAND ${POSEWRIGHT_WASM_OPT} --enable-exception-handling --enable-simd --enable-sign-ext --enable-mutable-globals
+    --post-emscripten -O2 --low-memory-unused --strip-debug ${PROJECT_BINARY_DIR}/bin/posewright.wasm -o ${package}/posewright.wasm)
+add_dependencies(posewright_page posewright_program)
+add_custom_command(TARGET posewright_page POST_BUILD
+  COMMAND ${CMAKE_COMMAND} -E compare_files ${PROJECT_BINARY_DIR}/page/posewright.wasm ${PROJECT_BINARY_DIR}/bin/posewright.wasm
+  COMMAND ${CMAKE_COMMAND} -E copy ${package}/posewright.wasm ${PROJECT_BINARY_DIR}/page/posewright.wasm)
 set_property(TARGET posewright_program APPEND PROPERTY LINK_DEPENDS ${CMAKE_CURRENT_LIST_DIR}/node.js)
 set_property(TARGET posewright_page APPEND PROPERTY LINK_DEPENDS ${CMAKE_CURRENT_LIST_DIR}/page.js)

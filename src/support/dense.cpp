@@ -54,4 +54,12 @@ void gebp_kernel<double, double, Index, blas_data_mapper<double, Index, ColMajor
 
 #endif
 
+namespace {
+
+// Eigen cuts long sums by the size of the caches, which it asks the processor for: one size for all, so that figures do
+// not depend on it.
+[[maybe_unused]] const bool sized = (Eigen::setCpuCacheSizes(32 << 10, 512 << 10, 4 << 20), true);
+
+}  // namespace
+
 POSEWRIGHT_DENSE_INSTANCES()

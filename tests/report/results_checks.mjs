@@ -191,4 +191,7 @@ export async function checkProblem(page, { data }) {
     await slider.fill(String(k));
     check((await page.locator('.stop').innerText()).endsWith(reason(k)), `the reason of configuration ${k} is shown`);
   }
+  const fills = await page.locator('.wire .tip:not(.now)').evaluateAll((dots) => dots.map((dot) => dot.style.fill));
+  const measurable = data.verdicts.slice(1, -1).filter((verdict) => verdict < 0).length;
+  check(fills.filter((fill) => fill === 'var(--verdict-feasible)').length === measurable, 'a picture in lines has the colours of the verdicts', fills.length);
 }

@@ -46,6 +46,10 @@ export function liveView(live, text) {
     // Nobody's hand loses what it drags: letting go asks for the next picture.
     if (grips?.grip) return true;
     viewer.show(report);
+    lifts.hidden = !viewer.solid;
+    hint.textContent = viewer.solid
+      ? 'Drag a purple grip to move what stands in the cell.'
+      : 'This browser has no WebGL: the picture is drawn in lines, and nothing can be dragged. Type positions in the steps or in the problem file.';
     handles();
     element.dataset.drawn = String(own);
     return true;
@@ -67,7 +71,8 @@ export function liveView(live, text) {
     waiting = setTimeout(draw, 250);
   });
 
-  const hint = 'Drag a purple grip to move what stands in the cell.';
-  const element = h('div', { class: 'live-view' }, viewer.element, h('label', { class: 'note' }, upright, ' grips move up and down'), h('p', { class: 'note' }, hint), busy);
+  const lifts = h('label', { class: 'note', hidden: true }, upright, ' grips move up and down');
+  const hint = h('p', { class: 'note' });
+  const element = h('div', { class: 'live-view' }, viewer.element, lifts, hint, busy);
   return { element, viewer };
 }

@@ -199,22 +199,33 @@ class AutomaticSearch {
     best_.exchanges = std::accumulate(moves.begin(), moves.end(), best_.exchanges);
   }
 
-  /// The best few local optima of different value, from one given set (if any) and from the weights.
-  std::vector<Outcome> settled(const DesignTask& task, const std::vector<int>& given) {
-    std::size_t count = std::clamp(std::size_t(options_.restarts), settled_starts, most_settled_starts);
-    // Weights over the workspace know better places than the candidates. Half as many starts find as good a set where
-    // a gradient moves it to the end.
-    if (given.empty() && task_.space->margins()) count /= 2;
+  /// Local optima from the starts `first` to `first + count`: rounded weights, one given set (if any), draws by the
+  /// weights.
+  std::vector<Outcome> settled_starts_of(const DesignTask& task, const std::vector<int>& given, std::size_t first,
+                                         std::size_t count) {
     std::vector<Outcome> found(count);
-    carry_out("local optima", found, monitor_, [&](std::size_t i) {
+    carry_out("local optima", found, monitor_, [&](std::size_t k) {
+      const std::size_t i = first + k;
       Random random(options_.seed, i);
-      // Rounded weights first, then draws by them.
       const auto state = task.criterion->start(
           task.candidates,
           i == 1 && !given.empty() ? given : start_of_restart(task, i == 0 ? 0 : 2 * i + 1, random, monitor_));
       const long exchanges = settle(*state, monitor_);
       return outcome_of(*state, exchanges);
     });
+    return found;
+  }
+
+  /// The best few local optima of different value, from one given set (if any) and from the weights.
+  std::vector<Outcome> settled(const DesignTask& task, const std::vector<int>& given) {
+    const std::size_t count = std::clamp(std::size_t(options_.restarts), settled_starts, most_settled_starts);
+    // Where half of them leave parameters open, as rounded weights of few poses may, the rest would too.
+    std::vector<Outcome> found = settled_starts_of(task, given, 0, count / 2);
+    const auto is_open = [](const Outcome& outcome) { return outcome.done && std::isinf(outcome.value); };
+    if (!std::all_of(found.begin(), found.end(), is_open)) {
+      const std::vector<Outcome> rest = settled_starts_of(task, given, count / 2, count - count / 2);
+      found.insert(found.end(), rest.begin(), rest.end());
+    }
     std::erase_if(found, [](const Outcome& outcome) { return !outcome.done; });
     for (const Outcome& outcome : found) best_.exchanges += outcome.exchanges;
     best_.restarts += int(found.size());

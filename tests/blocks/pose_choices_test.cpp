@@ -13,6 +13,13 @@ TEST(PoseChoices, HaveAKeyOfTheirOwnOrAreConditions) {
   EXPECT_EQ(shown_choice("joint_a2.approach"), "joint_a2.approach");
 }
 
+TEST(PoseChoices, ThatAreNewerAreNoKeysOfAPoseWithoutThem) {
+  // Files of problems that have no list of instruments are as they were.
+  EXPECT_TRUE(choice_key("load_case")->always);
+  EXPECT_TRUE(choice_key("station")->always);
+  EXPECT_FALSE(choice_key("instrument")->always);
+}
+
 TEST(PoseChoices, GiveTheLabelOfAName) {
   const PoseChoices choices = {{"station", "A"}, {"temperature", "20"}};
   EXPECT_EQ(label_of(choices, "temperature"), "20");

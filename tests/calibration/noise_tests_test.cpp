@@ -78,7 +78,8 @@ class VirtualArm {
     const Fit result = fit(*model_, columns_, poses, {});
     ResidualTests tests;
     test_correlations(*model_, columns_, poses, result, tests);
-    return {lack_of_fit(*model_, *instrument_, setting_.repeats, poses, repeated, result), tests.within, tests.serial};
+    return {lack_of_fit(*model_, *instrument_, problem_.measurement, poses, repeated, result), tests.within,
+            tests.serial};
   }
 
  private:

@@ -53,6 +53,19 @@ class Outputs(unittest.TestCase):
                       ["kr270/compensator.yaml", "--candidates", 60, *QUICK, "--prior", "tolerance"]):
             self.check("plan", self.run_program("plan", EXAMPLES / words[0], *words[1:], "--json"))
 
+    def test_a_list_of_instruments(self):
+        problem = EXAMPLES / "instruments/tracker_and_camera.yaml"
+        plan = self.run_program("plan", problem, "--candidates", 300, "--restarts", 1, "--json")
+        self.check("plan", plan)
+        self.assertEqual({pose["instrument"] for pose in plan["poses"]}, {"tracker", "camera"})
+        self.assertAlmostEqual(sum(one["share"] for one in plan["instruments"]) + plan["prior_share"], 1, 12)
+        (self.folder / "plan.json").write_text(json.dumps(plan))
+        self.check("evaluation", self.run_program("evaluate", problem, "plan.json", "--candidates", 300, "--json"))
+        self.run_program("simulate", problem, "plan.json", "--draws", 2, "--exact", "--data", "data.csv", "--json")
+        calibration = self.run_program("calibrate", problem, "data.csv", "--json")
+        self.check("calibration", calibration)
+        self.assertEqual([one["name"] for one in calibration["instruments"]], ["tracker", "camera"])
+
     def test_plans_against_a_truth(self):
         telescope = [EXAMPLES / "telescope/problem.yaml", "--truth", "matrix", "--poses", 20, "--candidates", 60]
         for criterion in ("discriminate", "bias", "o1"):

@@ -112,7 +112,7 @@ void MeasuredColumns::from_actuators() {
       if (!c.choice() || c.labels.size() < 2) continue;
       const auto at = std::find(c.labels.begin(), c.labels.end(), text(i, c.name));
       if (at == c.labels.end())
-        throw InputError({file_, line(i)}, "'" + text(i, c.name) + "' is not a " + c.name,
+        throw InputError({file_, line(i)}, "'" + text(i, c.name) + "' is no " + c.name,
                          fmt::format("allowed: {}", fmt::join(c.labels, ", ")));
       q[k] = c.values[std::size_t(at - c.labels.begin())];
     }

@@ -25,7 +25,7 @@ double temperature_of(const std::string& cell, const Coordinate& c, const Source
   constexpr double coldest = -100, hottest = 300;  // degrees Celsius, of a robot that somebody measures
   const std::optional<double> value = read_double(cell);
   if (!value || !(*value >= coldest && *value <= hottest))
-    throw InputError(place, fmt::format("'{}' is not a {}", cell.substr(0, 40), c.name),
+    throw InputError(place, fmt::format("'{}' is no {}", cell.substr(0, 40), c.name),
                      fmt::format("degrees Celsius, {} to {}", coldest, hottest));
   return *value;
 }
@@ -34,7 +34,7 @@ double of_label(const std::string& label, const Coordinate& c, const SourcePlace
   const auto at = std::find(c.labels.begin(), c.labels.end(), label);
   if (at == c.labels.end() && c.measurable) return temperature_of(label, c, place);
   if (at == c.labels.end())
-    throw InputError(place, fmt::format("'{}' is not a {}", label.substr(0, 40), c.name),
+    throw InputError(place, fmt::format("'{}' is no {}", label.substr(0, 40), c.name),
                      fmt::format("allowed: {}", fmt::join(c.labels, ", ")));
   return c.values[std::size_t(at - c.labels.begin())];
 }

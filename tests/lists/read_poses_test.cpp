@@ -83,7 +83,7 @@ TEST_F(ReadPoses, StationsNeedAFormatThatNamesThem) {
   EXPECT_EQ(list.ids, std::vector<int>{7});
   coordinates.back() = make_choice("station", {"A"});
   EXPECT_EQ(read("1,0,1\n", "robodk-csv", coordinates).configurations[0].size(), 4U) << "one station needs no column";
-  EXPECT_THAT(error(json, "", coordinates), HasSubstr("'B' is not a station; allowed: A"));
+  EXPECT_THAT(error(json, "", coordinates), HasSubstr("'B' is no station; allowed: A"));
 }
 
 }  // namespace

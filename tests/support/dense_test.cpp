@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "posewright/support/random.hpp"
@@ -48,6 +49,20 @@ TEST(Dense, ProductsOfAnyShapeAreSumsOfProducts) {
         const Eigen::MatrixXd turned = B.transpose() * A.transpose();
         EXPECT_LT(largest_difference(turned.transpose(), expected), rounding);
       }
+}
+
+// Eigen would cut after as many as the processor's first cache holds.
+TEST(Dense, LongSumsAreCutAtTheSamePlacesOnEveryProcessor) {
+  constexpr Eigen::Index depth = 2000, part = 504;
+  const Eigen::MatrixXd A = drawn(8, depth, 3), B = drawn(depth, 8, 4);
+  Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(8, 8);
+  for (Eigen::Index k = 0; k < depth; k += part) {
+    const Eigen::Index size = std::min(part, depth - k);
+    expected += product(A.middleCols(k, size), B.middleRows(k, size));
+  }
+  Eigen::MatrixXd C(8, 8);
+  C.noalias() = A * B;
+  EXPECT_EQ(largest_difference(C, expected), 0);
 }
 
 TEST(Dense, PartsOfMatricesAreMultipliedAndNothingBesideThemIsWritten) {

@@ -19,6 +19,7 @@ import { amplification, amplified, largestDeviation } from '../../report/src/num
 import { counts } from '../../report/src/numerics/stations.js';
 import { posesCsv } from '../../report/src/save_csv.js';
 import { shell, shellFile } from '../../report/src/sections/reproduce.js';
+import { instruments } from '../../report/src/text/sentences.js';
 import { coordinate, number, percentDown, quantity } from '../../report/src/text/units.js';
 
 const near = (value, expected, tolerance = 1e-12) =>
@@ -286,4 +287,15 @@ test('deviations of points are amplified 1, 2 or 5 times a power of ten, the lar
   assert.equal(amplification(points(0)), 0);
   amplified(points(-0.03)[0], 2).forEach((value, k) => near(value, [-0.06, 0, 0][k]));
   near(largestDeviation(points(0.003)), 0.004);
+});
+
+test('a plan says what each instrument of its list gives', () => {
+  const tracker = { name: 'tracker', poses: 17, share: 0.9896, efficiency_without: 0 };
+  const camera = { name: 'camera', poses: 1, share: 0.0104, efficiency_without: 0.98869 };
+  assert.equal(
+    instruments({ instruments: [tracker, camera] }),
+    'Instrument tracker reads 17 poses and gives 99.0 % of the information; without it not all parameters can be identified. ' +
+      'Instrument camera reads 1 pose and gives 1.0 % of the information; without it 98.86 % would be left.',
+  );
+  assert.equal(instruments({}), '');
 });

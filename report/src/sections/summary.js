@@ -75,6 +75,7 @@ export function wordsSection(list) {
     say.what(plan),
     say.accuracy(plan),
     say.worth(plan),
+    say.instruments(plan),
     `${say.proof(plan)} ${say.proofMeaning(plan)}`.trim(),
     say.searched(plan),
     say.loss(plan),

@@ -62,6 +62,18 @@ export function worth(plan) {
   );
 }
 
+/** What each instrument of a list gives. @param {any} plan */
+export function instruments(plan) {
+  const each = (plan.instruments ?? []).map(
+    (entry) =>
+      `Instrument ${entry.name} reads ${plural(entry.poses, 'pose')} and gives ${percent(entry.share)} of the information; ` +
+      (entry.efficiency_without > 0
+        ? `without it ${percentDown(entry.efficiency_without)} would be left.`
+        : 'without it not all parameters can be identified.'),
+  );
+  return each.join(' ');
+}
+
 /** What is proved over the candidates. @param {any} plan */
 export function proof(plan) {
   const c = plan.certificate.candidates;

@@ -11,7 +11,7 @@ namespace posewright {
 /// @param packages  folders of packages that the user names: become Problem::packages
 /// @param changed   keys with other values than in the file, in this order: a later one may lie in an earlier one.
 ///                  Entries of a list are 1, 2, …; paths in values are relative to the working directory. Messages name
-///                  "--set"
+///                  "--set KEY".
 Problem read_problem(const std::filesystem::path& file, const Packages& packages = {}, const KeyEdits& changed = {});
 
 /// Overload for text in memory; `file` names it in messages, and paths in it are relative to its folder.

@@ -27,28 +27,29 @@ void test_part(const Eigen::MatrixXd& J, const Eigen::MatrixXd& C, InstrumentRes
 std::vector<InstrumentResiduals> instrument_residuals(const IdentificationModel& model, const VariantColumns& columns,
                                                       const std::vector<MeasuredPose>& poses, const Fit& result) {
   std::vector<InstrumentResiduals> parts;
-  const auto choice = std::ranges::find(model.coordinates(), instrument_coordinate, &Coordinate::name);
-  if (choice == model.coordinates().end()) return parts;
-  const auto at = std::size_t(choice - model.coordinates().begin());
+  const std::optional<std::size_t> at = instrument_index(model.coordinates());
+  if (!at) return parts;
+  const std::vector<std::string>& names = model.coordinates()[*at].labels;
   // Robust and ordinary weights are no variances.
   const bool tested = result.weights.empty() && result.scale_known;
   const FittedRows rows = fitted_rows(model, columns.selected, poses, result.correction, result);
   const Eigen::MatrixXd C = result.covariance / std::pow(result.noise_factor, 2);
-  for (std::size_t k = 0; k < choice->labels.size(); ++k) {
+  for (std::size_t k = 0; k < names.size(); ++k) {
     InstrumentResiduals part;
-    part.name = choice->labels[k];
+    part.name = names[k];
     std::vector<MeasuredPose> own;
     std::vector<Eigen::VectorXd> residuals;
     std::vector<int> of_part;
     for (std::size_t i = 0; i < poses.size(); ++i) {
-      if (poses[i].q[at] != choice->values[k]) continue;
+      if (poses[i].q[*at] != double(k)) continue;
       own.push_back(poses[i]);
       residuals.push_back(result.residuals[i]);
       for (int row = rows.first[i]; row < rows.first[i + 1]; ++row) of_part.push_back(row);
     }
     part.poses = int(own.size());
     part.readings = int(of_part.size());
-    part.chi_square = rows.r(of_part).squaredNorm();
+    if (!own.empty()) part.noise_factor = own.front().noise_factor;
+    part.chi_square = std::pow(part.noise_factor, 2) * rows.r(of_part).squaredNorm();
     if (tested && part.readings > 0) test_part(rows.J(of_part, Eigen::all), C, part);
     part.kinds = summarise(model, own, residuals);
     parts.push_back(std::move(part));

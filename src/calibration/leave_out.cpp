@@ -10,6 +10,7 @@
 #include "posewright/calibration/gain_in_range.hpp"
 #include "posewright/calibration/placing_columns.hpp"
 #include "posewright/calibration/residual_statistics.hpp"
+#include "posewright/model/instrument_choice.hpp"
 #include "posewright/model/whitening.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
@@ -81,7 +82,70 @@ bool predict_others(const IdentificationModel& model, const VariantColumns& colu
   }
 }
 
+std::size_t groups_of(std::size_t poses) { return poses > most_single ? groups_above : poses; }
+
+/// One pose hardly tells how large the tolerances of all parameters are: they count as in the whole estimate.
+FitOptions as_estimated(FitOptions options, const Fit& whole) {
+  options.start = whole.correction;
+  options.components = false;
+  options.spreads = whole.spreads;
+  return options;
+}
+
+/// Help of instrument k; none where nothing is left to judge by.
+std::optional<InstrumentHelp> help_of(double k, std::size_t at, const IdentificationModel& model,
+                                      const VariantColumns& columns, const std::vector<MeasuredPose>& poses,
+                                      FitOptions options, const Fit& whole, const LeaveOut& judged,
+                                      const Monitor& monitor) {
+  std::vector<MeasuredPose> kept;
+  for (const MeasuredPose& pose : poses)
+    if (pose.q[at] != k) kept.push_back(pose);
+  const std::size_t groups = groups_of(poses.size());
+  InstrumentHelp help;
+  const VariantColumns left = determined(model, columns, kept, whole.correction, options.prior);
+  for (std::size_t j = 0; j < columns.selected.size(); ++j) {
+    if (std::ranges::count(left.selected, columns.selected[j]) > 0) continue;
+    // Nominal, as if this instrument had told nothing of them.
+    options.start[std::size_t(columns.selected[j])] = 0.0;
+    if (columns.parameters[j].role != Role::nuisance) help.alone.push_back(columns.parameters[j].name);
+  }
+  std::vector<double> with, without;
+  std::string none;
+  std::size_t n = 0;
+  for (std::size_t g = 0; g < groups; ++g) {
+    if (monitor.should_stop()) return std::nullopt;
+    std::vector<MeasuredPose> rest, others;
+    for (std::size_t i = g; i < poses.size(); i += groups, ++n) {
+      if (poses[i].q[at] == k || poses[i].noise_factor > 1) continue;
+      others.push_back(poses[i]);
+      with.push_back(judged.squares[n]);
+    }
+    for (std::size_t i = 0; i < poses.size(); ++i)
+      if (i % groups != g && poses[i].q[at] != k) rest.push_back(poses[i]);
+    if (others.empty()) continue;
+    if (!predict_others(model, left, options, rest, others, without, none))
+      without.resize(with.size(), std::numeric_limits<double>::infinity());
+  }
+  if (with.size() < 2) return std::nullopt;
+  help.with = summary(with, options.weighting);
+  help.without = summary(without, options.weighting);
+  help.gain =
+      std::isfinite(help.without) ? gain_of(with, without, options.weighting) : std::numeric_limits<double>::infinity();
+  return help;
+}
+
 }  // namespace
+
+void judge_help(const IdentificationModel& model, const VariantColumns& columns, const std::vector<MeasuredPose>& poses,
+                const FitOptions& options, const Fit& whole, const LeaveOut& judged, const Monitor& monitor,
+                std::vector<InstrumentResiduals>& instruments) {
+  const std::optional<std::size_t> at = instrument_index(model.coordinates());
+  if (!at || judged.squares.size() != poses.size()) return;
+  for (std::size_t k = 0; k < instruments.size(); ++k)
+    if (instruments[k].poses > 0)
+      instruments[k].help =
+          help_of(double(k), *at, model, columns, poses, as_estimated(options, whole), whole, judged, monitor);
+}
 
 LeaveOut leave_out(const IdentificationModel& model, const VariantColumns& columns,
                    const std::vector<MeasuredPose>& poses, const FitOptions& options, const std::vector<double>& start,
@@ -93,7 +157,7 @@ LeaveOut leave_out(const IdentificationModel& model, const VariantColumns& colum
     return result;
   }
   place = place.selected.empty() ? place : determined(model, place, poses, start, options.prior);
-  const std::size_t groups = poses.size() > most_single ? groups_above : poses.size();
+  const std::size_t groups = groups_of(poses.size());
   if (groups < 2) {
     result.why_not = "a single pose";
     return result;
@@ -111,12 +175,7 @@ LeaveOut leave_out(const IdentificationModel& model, const VariantColumns& colum
     place_options.start = start;
     if (place.selected.empty()) add_squares(model, start, others, placed);
     else if (!predict_others(model, place, place_options, rest, others, placed, none)) continue;
-    FitOptions all = options;
-    all.start = whole.correction;
-    // One pose hardly tells how large the tolerances of all parameters are.
-    all.components = false;
-    all.spreads = whole.spreads;
-    if (!predict_others(model, columns, all, rest, others, estimated, result.why_not))
+    if (!predict_others(model, columns, as_estimated(options, whole), rest, others, estimated, result.why_not))
       estimated.resize(placed.size(), std::numeric_limits<double>::infinity());
     monitor.report({"leaving poses out", double(g + 1), double(groups), {}, {}, {}});
   }

@@ -28,7 +28,9 @@ std::vector<int> judging(const IdentificationModel& model, const Eigen::VectorXd
 bool linearise_at(const IdentificationModel& model, const MeasuredPose& pose, const std::vector<double>& correction,
                   std::span<const int> selected, Linearisation& out, Eigen::VectorXd& y) {
   out.reading_share = pose.reading_share;
-  return model.predict_and_linearise(pose.q, correction, selected, out, y);
+  if (!model.predict_and_linearise(pose.q, correction, selected, out, y)) return false;
+  if (pose.noise_factor != 1.0) out.covariance *= pose.noise_factor * pose.noise_factor;
+  return true;
 }
 
 Eigen::VectorXd spreads_of(const VariantColumns& columns, const std::vector<double>& spreads) {

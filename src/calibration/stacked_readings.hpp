@@ -14,7 +14,7 @@ std::vector<int> indices_read(const Eigen::VectorXd& y);
 /// Readings that judge: lengths if there are any, since position is what a robot is calibrated for; else all.
 std::vector<int> judging(const IdentificationModel& model, const Eigen::VectorXd& y);
 
-/// model.predict_and_linearise() with the covariance of what was read at this pose.
+/// model.predict_and_linearise() with the covariance of the readings of this pose as they count.
 bool linearise_at(const IdentificationModel& model, const MeasuredPose& pose, const std::vector<double>& correction,
                   std::span<const int> selected, Linearisation& out, Eigen::VectorXd& y);
 

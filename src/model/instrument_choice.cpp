@@ -257,8 +257,13 @@ const MeasurementSpec& instrument_at(const MeasurementSpec& measurement, const s
                                      std::span<const double> q) {
   const std::vector<MeasurementSpec>* instruments = instruments_of(measurement);
   if (instruments == nullptr) return measurement;
+  return (*instruments)[std::size_t(q[*instrument_index(coordinates)])];
+}
+
+std::optional<std::size_t> instrument_index(const std::vector<Coordinate>& coordinates) {
   const auto at = std::ranges::find(coordinates, instrument_coordinate, &Coordinate::name);
-  return (*instruments)[std::size_t(q[std::size_t(at - coordinates.begin())])];
+  if (at == coordinates.end()) return std::nullopt;
+  return std::size_t(at - coordinates.begin());
 }
 
 }  // namespace posewright

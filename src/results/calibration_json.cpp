@@ -125,6 +125,16 @@ Json residuals_json(const Calibration& c) {
   return sets;
 }
 
+/// Null where it is not judged; members are null where no estimate predicts.
+Json help_json(const std::optional<InstrumentHelp>& help) {
+  if (!help) return nullptr;
+  const auto finite = [](double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); };
+  return {{"with", finite(help->with)},
+          {"without", finite(help->without)},
+          {"standard_errors", finite(help->gain)},
+          {"alone", help->alone}};
+}
+
 /// Null for one instrument alone.
 Json instruments_json(const Calibration& c) {
   Json list = nullptr;
@@ -134,10 +144,12 @@ Json instruments_json(const Calibration& c) {
     list.push_back({{"name", one.name},
                     {"poses", one.poses},
                     {"readings", one.readings},
+                    {"noise_factor", one.noise_factor},
                     {"chi_square", one.chi_square},
                     {"freedom", one.test.possible ? Json(one.freedom) : Json(nullptr)},
                     {"probability", one.test.possible ? Json(one.test.probability) : Json(nullptr)},
-                    {"residuals", kinds}});
+                    {"residuals", kinds},
+                    {"others", help_json(one.help)}});
   }
   return list;
 }

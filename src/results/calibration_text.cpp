@@ -132,10 +132,16 @@ std::string residuals_text(const Calibration& c) {
   return text;
 }
 
+std::string help_text(const InstrumentHelp& help) {
+  if (!std::isfinite(help.without)) return "not predicted";
+  return fmt::format("{:+.1f} % ({:+.1f} standard errors)", 100 * (help.without / help.with - 1), help.gain);
+}
+
 std::string instruments_text(const Calibration& c) {
   if (c.instruments.empty()) return "";
-  Table table({"instrument", "poses", "readings", "RMS", "times the stated noise", "p"},
-              {Align::left, Align::right, Align::right, Align::left, Align::right, Align::right});
+  Table table(
+      {"instrument", "poses", "readings", "RMS", "times the stated noise", "p", "error of the others without it"},
+      {Align::left, Align::right, Align::right, Align::left, Align::right, Align::right, Align::right});
   for (const InstrumentResiduals& one : c.instruments) {
     std::string rms;
     for (const ResidualSummary& k : one.kinds)
@@ -144,7 +150,8 @@ std::string instruments_text(const Calibration& c) {
                one.test.possible ? fmt::format("{:.3g}", std::sqrt(one.chi_square / one.freedom)) : "",
                !one.test.possible            ? ""
                : one.test.probability < 1e-6 ? "below 1e-6"
-                                             : fmt::format("{:.2g}", one.test.probability)});
+                                             : fmt::format("{:.2g}", one.test.probability),
+               one.help ? help_text(*one.help) : ""});
   }
   return "\nInstruments\n" + table.text();
 }

@@ -310,8 +310,9 @@ class PlanarReadings {
     return Eigen::VectorXd::Constant(1, (point(x, q1, q2, {0.1, 0}) - Eigen::Vector2d(2, 1.5)).norm() / 10e-6);
   }
 
-  /// @param gauge_noise  in units of the stated one
-  explicit PlanarReadings(unsigned seed, double gauge_noise = 1.0) {
+  /// @param gauge_noise   in units of the stated one
+  /// @param gauge_effect  amplitude of an error of the gauge that is smooth over the joints, in the same units
+  explicit PlanarReadings(unsigned seed, double gauge_noise = 1.0, double gauge_effect = 0.0) {
     std::mt19937 random(seed);
     std::normal_distribution<double> normal;
     std::uniform_real_distribution<double> angle(-1.8, 1.8);
@@ -322,6 +323,7 @@ class PlanarReadings {
       instrument.push_back(i % 3 == 0 ? 0 : 1);
       Eigen::VectorXd row = rows({2e-3, -1e-3, 4e-4}, q1.back(), q2.back(), instrument.back());
       for (double& value : row) value += (instrument.back() == 0 ? 1.0 : gauge_noise) * normal(random);
+      if (instrument.back() == 1) row[0] += gauge_effect * std::cos(1.3 * q1.back() + 0.9 * q2.back() + 0.4);
       z.push_back(row);
       const auto cell = [](double value) { return std::to_string(value * 1e9) + "e-9"; };
       csv += std::to_string(i + 1) + "," + cell(q1.back()) + "," + cell(q2.back());
@@ -422,6 +424,107 @@ TEST(InstrumentList, AnInstrumentWhoseNoiseIsStatedWronglyShowsAlone) {
   EXPECT_GT(result.instruments[0].test.probability, 0.01);
   EXPECT_LT(result.instruments[1].test.probability, 1e-6);
   EXPECT_NEAR(std::sqrt(result.instruments[1].chi_square / result.instruments[1].freedom), 3.0, 0.8);
+}
+
+/// Least squares of the test's own, of the poses that `counts` names.
+template <class Counts>
+Eigen::Vector3d least_squares(const PlanarReadings& data, const Counts& counts) {
+  Eigen::Vector3d x = Eigen::Vector3d::Zero();
+  for (int round = 0; round < 20; ++round) {
+    Eigen::Matrix3d M = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d b = Eigen::Vector3d::Zero();
+    for (std::size_t i = 0; i < data.q1.size(); ++i) {
+      if (!counts(i)) continue;
+      const auto at = [&](const Eigen::Vector3d& p) {
+        return data.rows(p, data.q1[i], data.q2[i], data.instrument[i]);
+      };
+      Eigen::MatrixXd D(data.z[i].size(), 3);
+      for (int k = 0; k < 3; ++k) {
+        const Eigen::Vector3d h = 1e-6 * Eigen::Vector3d::Unit(k);
+        D.col(k) = (at(x + h) - at(x - h)) / 2e-6;
+      }
+      M += D.transpose() * D;
+      b += D.transpose() * (data.z[i] - at(x));
+    }
+    x += M.ldlt().solve(b);
+  }
+  return x;
+}
+
+TEST(InstrumentList, HelpIsThatOfPosesThatAreLeftOut) {
+  const Planar planar;
+  const PlanarReadings data(4);
+  const Calibration result = calibrated(planar, data.csv);
+  constexpr std::size_t groups = 10;
+  for (int k = 0; k < 2; ++k) {
+    double sums[2] = {0, 0};
+    std::vector<double> gains;
+    for (std::size_t i = 0; i < data.q1.size(); ++i) {
+      if (data.instrument[i] == k) continue;
+      double squares[2];
+      for (const bool with : {true, false}) {
+        const Eigen::Vector3d x = least_squares(
+            data, [&](std::size_t n) { return n % groups != i % groups && (with || data.instrument[n] != k); });
+        const Eigen::VectorXd off = data.z[i] - data.rows(x, data.q1[i], data.q2[i], data.instrument[i]);
+        sums[with ? 0 : 1] += squares[with ? 0 : 1] = off.squaredNorm() / double(off.size());
+      }
+      gains.push_back(squares[1] - squares[0]);
+    }
+    const double n = double(gains.size());
+    const double mean = std::accumulate(gains.begin(), gains.end(), 0.0) / n;
+    double variance = 0;
+    for (const double gain : gains) variance += std::pow(gain - mean, 2) / (n - 1);
+    ASSERT_TRUE(result.instruments[std::size_t(k)].help);
+    const InstrumentHelp& help = *result.instruments[std::size_t(k)].help;
+    EXPECT_NEAR(help.with, std::sqrt(sums[0] / n), 1e-4 * help.with);
+    EXPECT_NEAR(help.without, std::sqrt(sums[1] / n), 1e-4 * help.without);
+    EXPECT_NEAR(help.gain, mean / std::sqrt(variance / n), 0.01);
+    EXPECT_TRUE(help.alone.empty());
+  }
+}
+
+TEST(InstrumentList, AnInstrumentCountsWithTheNoiseThatItsResidualsShow) {
+  const Planar planar;
+  const PlanarReadings data(7, 3.0);
+  const Calibration result = calibrated(planar, data.csv);
+  EXPECT_EQ(result.instruments[0].noise_factor, 1.0);
+  EXPECT_NEAR(result.instruments[1].noise_factor, 3.0, 0.8);
+  // At the maximum of the likelihood, by the definition: a stated factor that is larger or smaller has less.
+  const auto minus_two_log = [&](double factor) {
+    Eigen::Vector3d x = Eigen::Vector3d::Zero();
+    Eigen::VectorXd r;
+    Eigen::MatrixXd J, M;
+    std::vector<int> of;
+    for (int round = 0; round < 20; ++round) {
+      data.stack(x, r, J, of);
+      for (Eigen::Index row = 0; row < r.size(); ++row)
+        if (of[std::size_t(row)] == 1) {
+          r[row] /= factor;
+          J.row(row) /= factor;
+        }
+      M = J.transpose() * J;
+      x += M.ldlt().solve(J.transpose() * r);
+    }
+    return 2 * double(std::ranges::count(of, 1)) * std::log(factor) + std::log(M.determinant()) + r.squaredNorm();
+  };
+  const double best = result.instruments[1].noise_factor;
+  EXPECT_LT(minus_two_log(best), minus_two_log(1.01 * best));
+  EXPECT_LT(minus_two_log(best), minus_two_log(best / 1.01));
+  EXPECT_THAT(result.notes, testing::Contains(HasSubstr("gauge counts with")));
+}
+
+TEST(InstrumentList, AnInstrumentThatAgreesWithItselfIsNotBlamed) {
+  // Many lengths with an effect that no parameter describes, a few points without.
+  const Planar planar;
+  const Calibration result = calibrated(planar, PlanarReadings(3, 1.0, 30.0).csv);
+  EXPECT_EQ(result.instruments[0].noise_factor, 1.0);
+  EXPECT_GT(result.instruments[1].noise_factor, 10.0);
+  EXPECT_FALSE(result.instruments[0].help && result.instruments[0].help->harms());
+  const std::array<double, 3> truth{2e-3, -1e-3, 4e-4};
+  for (std::size_t j = 0; j < 3; ++j) {
+    const CalibratedParameter& p = result.parameters[j];
+    EXPECT_NEAR(p.value - p.label.nominal, truth[j], 4 * p.sigma) << p.label.name;
+  }
 }
 
 TEST(InstrumentList, ProbabilitiesOfAnInstrumentAreEven) {

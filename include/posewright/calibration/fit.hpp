@@ -17,6 +17,7 @@ struct MeasuredPose {
   /// Readings that are means of other numbers than the model's repeats n: factors n · n_ij/(n_i n_j) of the covariance
   /// of the readings, n_i how many readings i were taken and n_ij how often i and j together. Empty: all means of n.
   Eigen::MatrixXd reading_share{};
+  double noise_factor = 1.0;  ///< its readings count with so many times their stated 1σ, repeatability too
 };
 
 /// Weights of residuals: `ordinary` the same for all readings of a unit, `weighted` the instrument's covariance,

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "posewright/calibration/fit.hpp"
+#include "posewright/calibration/instrument_residuals.hpp"
 #include "posewright/support/monitor.hpp"
 
 namespace posewright {
@@ -38,6 +39,16 @@ struct LeaveOut {
 LeaveOut leave_out(const IdentificationModel& model, const VariantColumns& columns,
                    const std::vector<MeasuredPose>& poses, const FitOptions& options, const std::vector<double>& start,
                    const Fit& whole, const Monitor& monitor);
+
+/// Leaves each instrument of a list out, estimates from the rest of each group of leave_out() and predicts the other
+/// instruments' poses of that group, for InstrumentResiduals::help. It stays none where no pose of another instrument
+/// is left, or where the search was stopped early.
+/// @param whole   the estimate from all poses
+/// @param judged  of all poses
+/// @param instruments  instrument_residuals() of `whole`
+void judge_help(const IdentificationModel& model, const VariantColumns& columns, const std::vector<MeasuredPose>& poses,
+                const FitOptions& options, const Fit& whole, const LeaveOut& judged, const Monitor& monitor,
+                std::vector<InstrumentResiduals>& instruments);
 
 /// The combination of the columns that the readings alone tell least of, in units of tolerance: "0.71 a2.offset − 0.70
 /// base.ry are told apart to 531 tolerances only". Empty if all are told better than three tolerances.

@@ -65,4 +65,7 @@ class InstrumentChoice : public IdentificationModel {
 const MeasurementSpec& instrument_at(const MeasurementSpec& measurement, const std::vector<Coordinate>& coordinates,
                                      std::span<const double> q);
 
+/// Index of the coordinate `instrument`, whose value is the index of an instrument; none without a list.
+std::optional<std::size_t> instrument_index(const std::vector<Coordinate>& coordinates);
+
 }  // namespace posewright

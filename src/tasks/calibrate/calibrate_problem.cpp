@@ -11,6 +11,7 @@
 #include "calibration_accuracy.hpp"
 #include "calibration_columns.hpp"
 #include "calibration_data.hpp"
+#include "calibration_notes.hpp"
 #include "calibration_profiles.hpp"
 #include "calibration_refusals.hpp"
 #include "calibration_verdict.hpp"
@@ -18,10 +19,12 @@
 #include "placed_campaigns.hpp"
 #include "posewright/calibration/frame_limits.hpp"
 #include "posewright/calibration/frame_shift.hpp"
+#include "posewright/calibration/instrument_noise.hpp"
 #include "posewright/calibration/placing_columns.hpp"
 #include "posewright/lists/platform_images.hpp"
 #include "posewright/model/campaigns.hpp"
 #include "posewright/model/elastic_chain.hpp"
+#include "posewright/model/instrument_choice.hpp"
 #include "posewright/model/model_factory.hpp"
 #include "posewright/study/columns.hpp"
 #include "posewright/support/error.hpp"
@@ -37,8 +40,8 @@ constexpr int most_rounds = 4;
 constexpr double prior_share = 1 / std::numbers::sqrt2;
 // So many intervals no effect that is one of several moves an estimate.
 constexpr double far_moved = 10.0;
-// Sizes of a visit's displacements that move by less, the estimate and they in turn.
-constexpr double settled_visits = 1e-2;
+// Sizes of noise and of a visit's displacements that move by less, the estimate and they in turn.
+constexpr double settled_sizes = 1e-2;
 
 class CalibrationRun {
  public:
@@ -74,7 +77,7 @@ class CalibrationRun {
     refuse_gross_poses(*model_, columns_, fitted_, placed_, fit_options, result_.notes);
     refuse_conventions(problem_, *model_, columns_, fitted_, placed_, orientation_);
     if (options_.estimate_alone) {
-      fit_canonical(fit_options);
+      fit_readings(fit_options);
       return estimate_alone(fit_options);
     }
     estimate_with_profiles(fit_options);
@@ -85,8 +88,8 @@ class CalibrationRun {
       result_.left_out = leave_out(*model_, columns_, fitted_, fit_options, placed_, result_.fit, monitor_);
     if (options_.interpolate) interpolate(fit_options);
     judge_noise();
-    judge_instruments();
-    note_step();
+    judge_instruments(fit_options);
+    note(note_of_step(result_.step));
     note_visits();
     judge_calibration({*model_, columns_, fitted_, held_back_, placed_}, result_);
     judge_frame();
@@ -129,9 +132,15 @@ class CalibrationRun {
     result_.fit = fit(*model_, columns_, fitted_, fit_options);
   }
 
+  /// By the noise that instruments of a list show.
+  void fit_readings(FitOptions& fit_options) {
+    fit_canonical(fit_options);
+    count_instrument_noise(fit_options);
+  }
+
   /// With everything that the residuals say of it.
   void estimate(FitOptions& fit_options) {
-    fit_canonical(fit_options);
+    fit_readings(fit_options);
     test_estimate();
     if (count_visits(fit_options)) test_estimate();
     if (campaigns_.empty()) result_.step = frame_step(*model_, columns_, fitted_, result_.fit, frames_that_may_move());
@@ -146,6 +155,25 @@ class CalibrationRun {
     test_correlations(*model_, columns_, fitted_, result_.fit, result_.tests);
     result_.effects = effects_left_out({problem_, spec_}, *model_, columns_, fitted_, result_.fit,
                                        [this](const Problem& wider) { return model_of(wider); });
+  }
+
+  /// Instruments of a list whose residuals show a larger noise than stated count with that.
+  void count_instrument_noise(FitOptions options) {
+    if (options.weighting != Weighting::weighted) return;
+    for (int round = 0; round < most_rounds; ++round) {
+      const InstrumentNoise noise = instrument_noise(*model_, columns_, fitted_, result_.fit, result_.prior);
+      if (!noise.shown()) return;
+      const auto at = *instrument_index(model_->coordinates());
+      bool moved = false;
+      for (std::vector<MeasuredPose>* poses : {&fitted_, &held_back_, &validation_})
+        for (MeasuredPose& pose : *poses) {
+          const double before = std::exchange(pose.noise_factor, noise.factors[std::size_t(pose.q[at])]);
+          moved = moved || !settled(pose.noise_factor, before);
+        }
+      if (!moved) return;
+      options.start = result_.fit.correction;
+      fit_canonical(options);
+    }
   }
 
   /// True if the readings of a pose show displacements of a visit that nobody stated: the estimate counts them. An
@@ -176,7 +204,7 @@ class CalibrationRun {
     return true;
   }
 
-  static bool settled(double before, double after) { return std::abs(after - before) <= settled_visits * before; }
+  static bool settled(double before, double after) { return std::abs(after - before) <= settled_sizes * before; }
 
   /// The fit's noise factor counts all of the covariance, these displacements too.
   void count(const VisitErrors& visits, Repeatability stated) {
@@ -194,15 +222,7 @@ class CalibrationRun {
           fmt::format("the readings contradict the stated repeatability (p {:.2g}): targets of a pose err together by "
                       "more; the stated value is kept",
                       *contradicted_visits_));
-    if (!result_.visits) return;
-    const VisitErrors& v = *result_.visits;
-    std::vector<std::string> parts;
-    if (v.translation > 0) parts.push_back("position " + shown_value(v.translation, "m"));
-    if (v.rotation > 0) parts.push_back("rotation " + shown_value(v.rotation, "rad"));
-    note(fmt::format(
-        "targets of a pose err together: counted as repeatability, {}; state it, or look for an effect left "
-        "out",
-        fmt::join(parts, ", ")));
+    note(note_of_visits(result_.visits));
   }
 
   /// Base and what is on the tip, as effects.
@@ -213,18 +233,6 @@ class CalibrationRun {
       if (!frame.parameters.empty()) frames.push_back(std::move(frame));
     }
     return frames;
-  }
-
-  void note_step() {
-    if (!result_.step) return;
-    const FrameStep& step = *result_.step;
-    note(
-        fmt::format("from pose {} on, the {} stands elsewhere than up to pose {} ({:.3g} % of the squared residuals, p "
-                    "{}): was {}? "
-                    "Split the file there and give both parts",
-                    step.after, step.frame, step.before, 100 * step.share,
-                    step.chance < 1e-6 ? "below 1e-6" : fmt::format("= {:.2g}", step.chance),
-                    step.frame == "base" ? "the instrument moved" : "it remounted"));
   }
 
   /// A profile may pass a better estimate than the one that it began at.
@@ -392,10 +400,12 @@ class CalibrationRun {
   }
 
   /// A fit that counts an effect leaves readings by more than its estimate: their χ² has another mean then.
-  void judge_instruments() {
+  void judge_instruments(const FitOptions& options) {
     result_.instruments = instrument_residuals(*model_, columns_, fitted_, result_.fit);
     if (result_.counted)
       for (InstrumentResiduals& one : result_.instruments) one.test = {};
+    judge_help(*model_, columns_, fitted_, options, result_.fit, result_.left_out, monitor_, result_.instruments);
+    note(note_of_instruments(result_.instruments));
   }
 
   void fill_parameters() {

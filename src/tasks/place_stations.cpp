@@ -34,6 +34,7 @@ constexpr int quick_candidates = 400, quick_restarts = 1;
 using Set = std::vector<std::size_t>;  // indices into the list of places
 
 void require_stations(const Problem& problem) {
+  require_one_instrument(problem, "stations");
   MeasurementSpec measurement = problem.measurement;
   if (stations_of(measurement) == nullptr)
     throw InputError(problem.at(problem.workspace.stations->line),

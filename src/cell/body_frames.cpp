@@ -40,22 +40,25 @@ class ChainFrames : public BodyFrames {
 
   Eigen::VectorXd travel(int pose, int a, int b, double radius, double axis_radius) const override {
     Eigen::VectorXd bound = Eigen::VectorXd::Zero(Eigen::Index(dimension_));
-    // Of frame k's points: from its own axis, and from its origin.
-    double from_axis = axis_radius, from_origin = radius;
-    for (int k = b; k > a; --k) {
+    const auto moved_by = [&](int k, double from_axis) {
       const ChainJoint& joint = chain_.joints[std::size_t(k - 1)];
       bound[Eigen::Index(place(pose, std::size_t(k - 1)))] +=
           std::abs(joint.multiplier) * (joint.prismatic ? 1.0 : from_axis);
+    };
+    // Of frame k's points: from its own axis, and from its origin.
+    double from_axis = axis_radius, from_origin = radius;
+    for (int k = b; k > a; --k) {
+      moved_by(k, from_axis);
       if (k - 1 == a) break;
-      // What this joint may be pushed out comes to the fixed way from the frame before.
-      double pushed = 0.0;
-      if (joint.prismatic) {
-        const Coordinate& c = chain_.coordinates[std::size_t(joint.coordinate)];
-        pushed = std::abs(joint.multiplier) * std::max(std::abs(c.lower), std::abs(c.upper)) + std::abs(joint.offset);
-      }
-      const Eigen::Vector3d way = joint.X_ParentJoint.translation();
-      from_axis = way.cross(chain_.joints[std::size_t(k - 2)].axis).norm() + pushed + from_origin;
-      from_origin += way.norm() + pushed;
+      const Eigen::Vector3d way = chain_.joints[std::size_t(k - 1)].X_ParentJoint.translation();
+      from_axis = way.cross(chain_.joints[std::size_t(k - 2)].axis).norm() + pushed_by(k) + from_origin;
+      from_origin += way.norm() + pushed_by(k);
+    }
+    // Frame b before a: the axis of joint k goes through the end of the fixed way to it.
+    for (int k = b + 1; k <= a; ++k) {
+      from_origin += chain_.joints[std::size_t(k - 1)].X_ParentJoint.translation().norm();
+      moved_by(k, from_origin);
+      from_origin += pushed_by(k);
     }
     return bound;
   }
@@ -79,6 +82,14 @@ class ChainFrames : public BodyFrames {
   }
 
  private:
+  /// How far the joint of frame k may push it out, m: that comes to the fixed way from the frame before.
+  double pushed_by(int k) const {
+    const ChainJoint& joint = chain_.joints[std::size_t(k - 1)];
+    if (!joint.prismatic) return 0.0;
+    const Coordinate& c = chain_.coordinates[std::size_t(joint.coordinate)];
+    return std::abs(joint.multiplier) * std::max(std::abs(c.lower), std::abs(c.upper)) + std::abs(joint.offset);
+  }
+
   std::size_t place(int pose, std::size_t joint) const {
     return places_[std::size_t(pose)][std::size_t(chain_.joints[joint].coordinate)];
   }

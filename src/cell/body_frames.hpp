@@ -25,10 +25,10 @@ class BodyFrames {
   virtual void poses(std::span<const double> q, int pose, std::span<Eigen::Isometry3d> X_MeasureFrame) const = 0;
   /// Axis of the joint that moves frame b, in frame b; z for a platform.
   virtual Eigen::Vector3d axis(int b) const = 0;
-  /// Per coordinate (of all of a configuration): how far a point of frame b moves at most relative to frame a < b while
+  /// Per coordinate (of all of a configuration): how far a point of frame b moves at most relative to frame a while
   /// that coordinate changes by one unit.
   /// @param radius       m, largest distance of these points from the origin of b
-  /// @param axis_radius  m, the same from the line through the origin along axis(b)
+  /// @param axis_radius  m, the same from the line through the origin along axis(b); not read if b < a
   virtual Eigen::VectorXd travel(int pose, int a, int b, double radius, double axis_radius) const = 0;
   /// After which change of a coordinate all frames are where they were, rad; 0: none.
   virtual double period(std::size_t) const { return 0.0; }

@@ -52,7 +52,17 @@ void refuse_moving_branch(const BodyShape& shape) {
                      "remove its <collision>, or choose a tip whose chain has the joint");
 }
 
-void add_obstacles(const ObstacleFileSpec& spec, const NamedFiles& files, std::vector<BodyShape>& shapes) {
+/// Frame and pose in it of what stands in the cell: in the URDF's root if joints of the way move the base, as the
+/// measurement frame moves with its base; else in the measurement frame.
+RootPlace cell_place(const Problem& problem) {
+  const auto* arm = std::get_if<SerialArmSpec>(&problem.robot);
+  if (arm == nullptr) return {};
+  const RootPlace root = root_place(*arm, problem.at(arm->line));
+  return root.base_moves() ? root : RootPlace{};
+}
+
+void add_obstacles(const ObstacleFileSpec& spec, const NamedFiles& files, const RootPlace& cell,
+                   std::vector<BodyShape>& shapes) {
   std::set<std::string> taken;
   for (const BodyShape& shape : shapes) taken.insert(shape.name);
   for (PlacedShape& placed : read_obstacle_file(spec, files)) {
@@ -60,21 +70,10 @@ void add_obstacles(const ObstacleFileSpec& spec, const NamedFiles& files, std::v
       throw InputError(files.problem.at(spec.line),
                        "'" + spec.file.string() + "' has a body named '" + placed.name + "', as another one is",
                        "except: [" + placed.name + "], or another name");
-    shapes.push_back({placed.name, "", "", BodyShape::Kind::obstacle, 0, isometry(spec.placement) * placed.X,
-                      std::move(placed.shape), SourcePlace{spec.file.string(), placed.line}});
+    shapes.push_back({placed.name, "", "", BodyShape::Kind::obstacle, cell.frame,
+                      cell.X_FrameRoot * isometry(spec.placement) * placed.X, std::move(placed.shape),
+                      SourcePlace{spec.file.string(), placed.line}});
   }
-}
-
-/// The measurement frame moves with its base, and obstacles would with it.
-void refuse_obstacles_of_moving_base(const Problem& problem) {
-  const CollisionSpec& spec = *problem.workspace.collision;
-  const auto* arm = std::get_if<SerialArmSpec>(&problem.robot);
-  if (arm == nullptr || (spec.obstacles.empty() && spec.obstacle_files.empty())) return;
-  if (base_moves(*arm, problem.at(arm->line)))
-    throw InputError(
-        problem.at(spec.obstacles.empty() ? spec.obstacle_files.front().line : spec.obstacles.front().line),
-        "obstacles need a base that stands, and joints between base and tip move it",
-        "links of the URDF that hang on its root");
 }
 
 }  // namespace
@@ -93,11 +92,15 @@ std::vector<BodyShape> list_shapes(const Problem& problem, int tip_frame, const 
   for (const BodySpec& part : problem.workspace.collision->tool)
     shapes.push_back({part.name, part.station, last_link, BodyShape::Kind::tool, tip_frame,
                       X_FrameTip * isometry(part.placement), part.shape, problem.at(part.line)});
-  refuse_obstacles_of_moving_base(problem);
-  for (const BodySpec& obstacle : problem.workspace.collision->obstacles)
-    shapes.push_back({obstacle.name, obstacle.station, "", BodyShape::Kind::obstacle, 0, isometry(obstacle.placement),
-                      obstacle.shape, problem.at(obstacle.line)});
-  for (const ObstacleFileSpec& file : problem.workspace.collision->obstacle_files) add_obstacles(file, problem, shapes);
+  const RootPlace cell = cell_place(problem);
+  for (const BodySpec& obstacle : problem.workspace.collision->obstacles) {
+    // An instrument's own body stands where the instrument does.
+    const RootPlace place = obstacle.station.empty() ? cell : RootPlace{};
+    shapes.push_back({obstacle.name, obstacle.station, "", BodyShape::Kind::obstacle, place.frame,
+                      place.X_FrameRoot * isometry(obstacle.placement), obstacle.shape, problem.at(obstacle.line)});
+  }
+  for (const ObstacleFileSpec& file : problem.workspace.collision->obstacle_files)
+    add_obstacles(file, problem, cell, shapes);
   return shapes;
 }
 

@@ -86,7 +86,9 @@ class SceneBuilder {
   }
 
   void add_pair(int a, int b, int reason, double clearance) {
-    if (scene_.bodies[std::size_t(a)].frame > scene_.bodies[std::size_t(b)].frame) std::swap(a, b);
+    if (const Body& first = scene_.bodies[std::size_t(a)], &second = scene_.bodies[std::size_t(b)];
+        !first.obstacle && first.frame > second.frame)
+      std::swap(a, b);
     scene_.pairs.push_back({a, b, reason, clearance + motion_resolution, clearance, 0.0, {}});
     const Body &first = scene_.bodies[std::size_t(a)], &second = scene_.bodies[std::size_t(b)];
     double reach = 0, axis_reach = 0;
@@ -130,7 +132,8 @@ class SceneBuilder {
       for (int j = 0; j < count; ++j) {
         const Body& body = scene_.bodies[std::size_t(j)];
         // What does not move stands where the user put it: a base on its table touches it.
-        if (body.obstacle || body.frame == 0 || ignored_.count(ordered(obstacle.name, body.name)) > 0) continue;
+        if (body.obstacle || body.frame == obstacle.frame || ignored_.count(ordered(obstacle.name, body.name)) > 0)
+          continue;
         add_pair(i, j, reason, spec_.clearance);
       }
     }

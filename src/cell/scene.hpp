@@ -42,7 +42,7 @@ struct Body {
 
 /// Two bodies that must not come nearer than `clearance`.
 struct BodyPair {
-  int a = 0, b = 0;  ///< bodies; the frame of a is not above that of b
+  int a = 0, b = 0;  ///< bodies; a is an obstacle, or its frame is not above that of b
   int reason = 0;
   double clearance = 0.0;               ///< m, margins included
   double asked = 0.0;                   ///< m, without margins

@@ -68,15 +68,16 @@ UncalibratedError::UncalibratedError(const Problem& problem, const Identificatio
 }
 
 double UncalibratedError::of(const Body& a, const Body& b) const {
-  // Where the robot stands moves its links off obstacles, not off each other.
-  const int fixed_to = a.obstacle ? -1 : a.frame;
+  // Where the robot stands moves its links off obstacles of the measurement frame, not off each other.
+  const int fixed_to = a.obstacle && a.frame == 0 ? -1 : std::min(a.frame, b.frame);
+  const int last = std::max(a.frame, b.frame);
   double largest = 0;
   for (std::size_t i = 0; i < poses_.size(); ++i) {
     const Eigen::Isometry3d X = poses_[i][std::size_t(b.frame)] * b.X_FrameBody;
     const Eigen::Vector3d centre = X * b.solid->centre();
     double variance = 0;
     for (std::size_t c = 0; c < acts_from_.size(); ++c) {
-      if (acts_from_[c] <= fixed_to || acts_from_[c] > b.frame) continue;
+      if (acts_from_[c] <= fixed_to || acts_from_[c] > last) continue;
       const Eigen::Vector3d v = twists_[i][c].head<3>(), w = twists_[i][c].tail<3>();
       const double moved = (v + w.cross(centre)).norm() + w.norm() * b.solid->radius();
       variance += moved * moved;

@@ -131,7 +131,7 @@ void print_summary(const InitFacts& facts, const InitResult& result, const fs::p
   fmt::print("{}: {} joints from {} to {}, {}\n", file.string(), result.joints, result.base, result.tip,
              !facts.camera   ? std::string("laser tracker")
              : facts.on_hand ? facts.lens.name + " on the hand"
-                             : facts.lens.name + " fixed in the cell");
+                             : facts.lens.name + " fixed");
   fmt::print("Check the file, then run: posewright plan {}{}\n", file.string(), words_again(values));
 }
 

@@ -76,13 +76,52 @@ ChainCorrection of_frames(const ChainDescription& chain, const std::vector<Calib
     FrameCorrection frame = given.displacement(layout.displacement[k]);
     const int offset = layout.offset[std::size_t(joint.coordinate)];
     given.name(offset, 1, frame.by);
-    frame.X = frame.X * motion(!joint.prismatic, joint.axis, joint.multiplier * given.at(offset));
+    const Eigen::Vector3d axis = joint.backward() ? Eigen::Vector3d(-joint.axis) : joint.axis;
+    frame.X = frame.X * motion(!joint.prismatic, axis, joint.multiplier * given.at(offset));
     result.joints.push_back(std::move(frame));
     if (!joint.mimic) given.name(offset + 1, 1, result.left_out);
   }
   result.tip = given.displacement(layout.tool);
   result.left_out.insert(result.left_out.end(), given.others.begin(), given.others.end());
   return result;
+}
+
+/// The part of X that any motion of a joint lets pass, as its offset: about and along the axis of one that turns, a
+/// translation of one that slides.
+Eigen::Isometry3d passing_part(const Eigen::Isometry3d& X, const ChainJoint& joint) {
+  Eigen::Isometry3d part = Eigen::Isometry3d::Identity();
+  if (joint.prismatic) {
+    part.translation() = X.linear().transpose() * X.translation();
+    return part;
+  }
+  const Eigen::Quaterniond rotation(X.linear());
+  part.translation() = joint.axis.dot(X.translation()) * joint.axis;
+  part.linear() =
+      Eigen::AngleAxisd(2 * std::atan2(joint.axis.dot(rotation.vec()), rotation.w()), joint.axis).toRotationMatrix();
+  return part;
+}
+
+/// Displacements behind the frames of all joints, written as ChainCorrection has those of joints that are passed
+/// backward: what the motion lets pass is the joint's own, the rest that of the joint before it, or of the base.
+void turn_backward(const ChainDescription& chain, ChainCorrection& correction) {
+  FrameCorrection behind;  // of the joint at hand, by the joint after it
+  for (std::size_t k = chain.joints.size(); k-- > 0;) {
+    if (!chain.joints[k].backward()) continue;
+    FrameCorrection& own = correction.joints[k];
+    FrameCorrection rest;
+    Eigen::Isometry3d passing = Eigen::Isometry3d::Identity();
+    if (!own.by.empty()) {
+      const Eigen::Isometry3d& P = chain.joints[k].X_ParentJoint;
+      passing = passing_part(own.X, chain.joints[k]);
+      rest.X = P * own.X * passing.inverse() * P.inverse();
+      if (!rest.X.isApprox(Eigen::Isometry3d::Identity(), 1e-15)) rest.by = own.by;
+    }
+    own.X = (passing * behind.X).inverse();
+    own.by.insert(own.by.end(), behind.by.begin(), behind.by.end());
+    behind = std::move(rest);
+  }
+  correction.base.X = correction.base.X * behind.X;
+  correction.base.by.insert(correction.base.by.end(), behind.by.begin(), behind.by.end());
 }
 
 /// Between two joint motions a chain in Denavit–Hartenberg parameters has the constant A, nominally A⁰. Its frame on
@@ -129,6 +168,7 @@ ChainCorrection of_dh(const ChainDescription& chain, DhConvention convention,
   result.tip.by = std::move(by);
   result.tip.by.insert(result.tip.by.end(), tool.by.begin(), tool.by.end());
   result.left_out = std::move(given.others);
+  turn_backward(chain, result);
   return result;
 }
 
@@ -158,8 +198,14 @@ ChainCorrection chain_correction(const ChainDescription& chain, Convention conve
 
 ChainDescription corrected_chain(ChainDescription chain, const ChainCorrection& correction) {
   chain.X_MeasureBase = chain.X_MeasureBase * correction.base.X;
-  for (std::size_t k = 0; k < chain.joints.size(); ++k)
-    chain.joints[k].X_ParentJoint = chain.joints[k].X_ParentJoint * correction.joints[k].X;
+  for (std::size_t k = 0; k < chain.joints.size(); ++k) {
+    ChainJoint& joint = chain.joints[k];
+    if (k > 0 && chain.joints[k - 1].backward())
+      joint.X_ParentJoint = correction.joints[k - 1].X.inverse() * joint.X_ParentJoint;
+    if (joint.backward()) joint.X_AboveJoint = *joint.X_AboveJoint * correction.joints[k].X;
+    else joint.X_ParentJoint = joint.X_ParentJoint * correction.joints[k].X;
+  }
+  if (chain.joints.back().backward()) chain.X_LastTip = correction.joints.back().X.inverse() * chain.X_LastTip;
   chain.X_LastTip = chain.X_LastTip * correction.tip.X;
   return chain;
 }

@@ -105,88 +105,29 @@ struct ChangedJoints {
   std::vector<std::string> left_out;
 };
 
-/// Change of an origin in the URDF: before · origin · behind.
-struct OriginChange {
-  Eigen::Isometry3d before = Eigen::Isometry3d::Identity(), behind = before;
-};
-
-/// The part of X that any motion of a joint lets pass, as its offset: about and along the axis of one that turns, a
-/// translation of one that slides.
-Eigen::Isometry3d passing_part(const Eigen::Isometry3d& X, const UrdfJoint& joint) {
-  Eigen::Isometry3d part = Eigen::Isometry3d::Identity();
-  if (joint.type == UrdfJoint::Type::prismatic) {
-    part.translation() = X.linear().transpose() * X.translation();
-    return part;
-  }
-  const Eigen::Vector3d axis = joint.axis.normalized();
-  const Eigen::Quaterniond rotation(X.linear());
-  part.translation() = axis.dot(X.translation()) * axis;
-  part.linear() = Eigen::AngleAxisd(2 * std::atan2(axis.dot(rotation.vec()), rotation.w()), axis).toRotationMatrix();
-  return part;
-}
-
-/// Corrections of the chain's frames as changes of origins. Before a joint that is passed backward stands its child
-/// link, which has no origin there: what its motion lets pass goes into its own origin, the rest into that of the joint
-/// before.
-class OriginChanges {
- public:
-  OriginChanges(const UrdfDocument& urdf, const ChainCorrection& correction)
-      : way_(urdf.way()), changes_(urdf.way().size()) {
-    std::size_t next = 0;
-    for (std::size_t i = 0; i < way_.size(); ++i)
-      if (way_[i].joint->moves()) correct(i, correction.joints[next++]);
-    const UrdfStep& last = way_.back();
-    if (last.backward) changes_.back().before = correction.tip.X.inverse();
-    else if (!last.joint->moves()) changes_.back().behind = correction.tip.X;
-    else
-      for (const CalibratedValue& v : correction.tip.by)
-        left_out.push_back(left_out_text(v, "no fixed joint ends in link '" + urdf.tip().name + "'"));
-  }
-
-  std::vector<std::pair<std::string, NewOrigin>> origins() const {
-    std::vector<std::pair<std::string, NewOrigin>> result;
-    for (std::size_t i = 0; i < way_.size(); ++i) {
-      const auto& [before, behind] = changes_[i];
-      const Eigen::Isometry3d& old = way_[i].joint->X_ParentJoint;
-      const bool only_behind = before.isApprox(Eigen::Isometry3d::Identity(), 0);
-      const NewOrigin origin = new_origin(old, only_behind ? behind : old.inverse() * before * old * behind);
-      if (origin.xyz || origin.rpy) result.emplace_back(way_[i].joint->name, origin);
-    }
-    return result;
-  }
-
-  std::vector<std::string> left_out;
-
- private:
-  void correct(std::size_t i, const FrameCorrection& correction) {
-    if (!way_[i].backward) {
-      changes_[i].behind = correction.X;
-      return;
-    }
-    if (correction.by.empty()) return;
-    const Eigen::Isometry3d passing = passing_part(correction.X, *way_[i].joint);
-    changes_[i].behind = passing.inverse();
-    const Eigen::Isometry3d rest = correction.X * passing.inverse();
-    if (i > 0) changes_[i - 1].before = rest.inverse();
-    else if (!rest.isApprox(Eigen::Isometry3d::Identity(), 1e-15))
-      for (const CalibratedValue& v : correction.by)
-        left_out.push_back(
-            left_out_text(v, "only its part about and along the joint is written, the rest moves the base"));
-  }
-
-  const std::vector<UrdfStep>& way_;
-  std::vector<OriginChange> changes_;
-};
-
 ChangedJoints changed_joints(const SerialArmSpec& arm, const SourcePlace& place, const UrdfDocument& urdf,
                              VariantSpec::Convention convention, const std::vector<CalibratedValue>& values) {
   const ChainDescription chain = read_urdf_chain(arm, place);
   const ChainCorrection correction = chain_correction(chain, convention, values);
-  const OriginChanges changes(urdf, correction);
-  ChangedJoints result{changes.origins(), {}};
+  ChangedJoints result;
   for (const CalibratedValue& v : correction.base.by)
     result.left_out.push_back(left_out_text(v, "the pose of the base is not part of the robot"));
-  result.left_out.insert(result.left_out.end(), changes.left_out.begin(), changes.left_out.end());
+  const UrdfStep& last = urdf.way().back();
+  const bool has_tool = last.backward || last.joint->type == UrdfJoint::Type::fixed;
+  if (!has_tool)
+    for (const CalibratedValue& v : correction.tip.by)
+      result.left_out.push_back(left_out_text(v, "no fixed joint ends in link '" + urdf.tip().name + "'"));
+  std::size_t next = 0;
+  for (const UrdfStep& step : urdf.way()) {
+    const Eigen::Isometry3d& old = step.joint->X_ParentJoint;
+    Eigen::Isometry3d behind = Eigen::Isometry3d::Identity();
+    if (step.joint->moves()) behind = correction.joints[next++].X;
+    // The tip is the parent of a last joint that is passed backward.
+    if (&step == &last && has_tool && !correction.tip.by.empty())
+      behind = last.backward ? old.inverse() * correction.tip.X.inverse() * old * behind : correction.tip.X;
+    const NewOrigin origin = new_origin(old, behind);
+    if (origin.xyz || origin.rpy) result.origins.emplace_back(step.joint->name, origin);
+  }
   for (const CalibratedValue& v : correction.left_out) result.left_out.push_back(left_out_text(v, reason_of(v.name)));
   if (convention == VariantSpec::Convention::frames)
     for (std::string& note : stray_mimics(urdf, values)) result.left_out.push_back(std::move(note));

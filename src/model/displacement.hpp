@@ -64,6 +64,13 @@ inline DisplacementAxes displace(Frame<double>& frame, const double* d) {
   return axes;
 }
 
+/// Takes a displacement by d back, and returns the axes of this displacement where it begins then.
+inline DisplacementAxes take_back(Frame<double>& frame, const double* d) {
+  if (d != nullptr) frame.then_take_back(d);
+  Frame<double> there = frame;
+  return displace(there, d);
+}
+
 /// The corrections of a robot inside another one, whose own parameters are a block of `count` from `first` on. `rest`
 /// holds them; empty corrections stay empty.
 std::span<const double> without_block(std::span<const double> correction, int first, std::size_t count,

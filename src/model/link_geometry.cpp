@@ -34,11 +34,15 @@ class LinkCollector {
     // Above the highest link everything stands where zero position puts it.
     Eigen::Isometry3d X_RootHighest = Eigen::Isometry3d::Identity();
     for (const UrdfJoint* joint = highest->above; joint != nullptr; joint = joint->parent->above)
-      X_RootHighest = joint->X_ParentJoint * X_RootHighest;
-    collect(urdf_.tree().root(), {top.frame, top.X_FrameLink * X_RootHighest.inverse()}, "", "");
+      X_RootHighest = joint->X_ParentChild() * X_RootHighest;
+    root_ = {top.frame, top.X_FrameLink * X_RootHighest.inverse()};
   }
 
-  std::vector<LinkGeometry> take() { return std::move(links_); }
+  std::vector<LinkGeometry> links() {
+    collect(urdf_.tree().root(), root_, "", "");
+    return std::move(links_);
+  }
+  RootPlace root() const { return {root_.frame, root_.X_FrameLink}; }
 
  private:
   struct Place {
@@ -57,7 +61,7 @@ class LinkCollector {
       // A joint of the way may put a link on another frame; all others hang on that of the link before.
       const auto placed = placed_.find(joint->child);
       collect(*joint->child,
-              placed == placed_.end() ? Place{at.frame, at.X_FrameLink * joint->X_ParentJoint} : placed->second,
+              placed == placed_.end() ? Place{at.frame, at.X_FrameLink * joint->X_ParentChild()} : placed->second,
               seen ? link.name : parent, placed == placed_.end() && follows_chain(joint) ? joint->name : follower);
     }
   }
@@ -83,6 +87,7 @@ class LinkCollector {
   UrdfDocument urdf_;
   std::filesystem::path folder_;
   ShapesOf wanted_;
+  Place root_;
   std::map<const UrdfLink*, Place> placed_;  // by the way's joints that move
   std::set<const UrdfJoint*> moving_;        // these joints
   std::set<std::string> masters_;            // joints that those of the chain follow, in it or not
@@ -92,18 +97,20 @@ class LinkCollector {
 }  // namespace
 
 std::vector<LinkGeometry> read_urdf_links(const SerialArmSpec& arm, const SourcePlace& place) {
-  return LinkCollector(UrdfDocument(arm, place), arm.urdf.parent_path(), isometry(arm.placement)).take();
+  return LinkCollector(UrdfDocument(arm, place), arm.urdf.parent_path(), isometry(arm.placement)).links();
 }
 
 std::vector<LinkGeometry> read_urdf_visuals(const SerialArmSpec& arm, const SourcePlace& place) {
   return LinkCollector(UrdfDocument(arm, place), arm.urdf.parent_path(), isometry(arm.placement), ShapesOf::visual)
-      .take();
+      .links();
 }
 
-bool base_moves(const SerialArmSpec& arm, const SourcePlace& place) { return UrdfDocument(arm, place).moves_base(); }
+RootPlace root_place(const SerialArmSpec& arm, const SourcePlace& place) {
+  return LinkCollector(UrdfDocument(arm, place), {}, isometry(arm.placement)).root();
+}
 
 std::vector<LinkGeometry> read_urdf_still(const std::filesystem::path& file) {
-  return LinkCollector(UrdfDocument(file), file.parent_path(), Eigen::Isometry3d::Identity()).take();
+  return LinkCollector(UrdfDocument(file), file.parent_path(), Eigen::Isometry3d::Identity()).links();
 }
 
 }  // namespace posewright

@@ -26,7 +26,7 @@ Frame<double> run_chain(const ChainDescription& chain, const ChainLayout& layout
   for (std::size_t k = 0; k < chain.joints.size(); ++k) {
     const ChainJoint& joint = chain.joints[k];
     frame.then(joint.X_ParentJoint);
-    state.displacement[k + 1] = displace(frame, part(layout.displacement[k]));
+    if (!joint.backward()) state.displacement[k + 1] = displace(frame, part(layout.displacement[k]));
     const double* own = part(layout.offset[std::size_t(joint.coordinate)]);
     double reading = own == nullptr ? q[joint.coordinate] : (1 + own[1]) * q[joint.coordinate] + own[0];
     if (deflection != nullptr) reading += deflection[joint.coordinate];
@@ -35,6 +35,7 @@ Frame<double> run_chain(const ChainDescription& chain, const ChainLayout& layout
     state.motion[k] = joint.prismatic ? prismatic(axis) : revolute(axis, frame.p);
     if (joint.prismatic) frame.p += axis * value;
     else frame.then_rotate(joint.axis, value);
+    if (joint.backward()) state.displacement[k + 1] = take_back(frame, part(layout.displacement[k]));
   }
   frame.then(chain.X_LastTip);
   state.displacement[chain.joints.size() + 1] = displace(frame, part(layout.tool));
@@ -84,7 +85,7 @@ SerialChain::SerialChain(ChainDescription chain) : chain_(std::move(chain)), lay
   add_displacement("base", -1, 0, chain_.X_MeasureBase, 10e-3, 1 * degree);
   for (std::size_t k = 0; k < chain_.joints.size(); ++k) {
     const ChainJoint& joint = chain_.joints[k];
-    add_displacement(joint.name, int(k), 3, joint.X_ParentJoint, 0.5e-3, 0.05 * degree);
+    add_displacement(joint.name, int(k), 3, joint.X_AboveJoint.value_or(joint.X_ParentJoint), 0.5e-3, 0.05 * degree);
     joints_of_coordinate_[std::size_t(joint.coordinate)].push_back(int(k));
     if (joint.mimic) continue;
     geometric_.push_back({int(parameters_.size()), 2});
@@ -96,6 +97,10 @@ SerialChain::SerialChain(ChainDescription chain) : chain_(std::move(chain)), lay
     parameters_.push_back({joint.name + ".gear", "1", 0.0, 1e-3, Role::interest});
   }
   add_displacement("tool", int(chain_.joints.size()), 1, chain_.X_LastTip, 5e-3, 1 * degree);
+}
+
+bool SerialChain::is_backward(int joint) const {
+  return joint >= 0 && joint < int(chain_.joints.size()) && chain_.joints[std::size_t(joint)].backward();
 }
 
 bool SerialChain::linearise(const Point& at, std::span<const int> selected, Eigen::Isometry3d& X, Twists& twists,
@@ -161,8 +166,8 @@ void SerialChain::linearise_deflected(std::span<const double> q, std::span<const
       if (column.kind == 7) out *= q[std::size_t(coordinate)];
       continue;
     }
-    const DisplacementAxes& axes = state.displacement[std::size_t(column.joint + 1)];
-    out = axes.twist(column.kind);
+    out = state.displacement[std::size_t(column.joint + 1)].twist(column.kind);
+    if (is_backward(column.joint)) out = -out;
   }
   if (reading_twists != nullptr) {
     reading_twists->resize(6, Eigen::Index(coordinates_.size()));
@@ -209,10 +214,10 @@ void SerialChain::pull_back_deflected(std::span<const double> q, std::span<const
     const Twist slope = f.twists.col(Eigen::Index(c));
     const Column& column = columns_[std::size_t(selected[c])];
     if (column.kind < 6) {
-      // The base's own axes are carried by no joint.
-      if (column.joint >= 0)
-        carried[std::size_t(column.joint)] +=
-            carried_change(state.displacement[std::size_t(column.joint + 1)].twist(column.kind), slope);
+      // The base's own axes are carried by no joint, those of a joint that is passed backward by itself too.
+      const Twist own = state.displacement[std::size_t(column.joint + 1)].twist(column.kind);
+      if (is_backward(column.joint)) carried[std::size_t(column.joint + 1)] += carried_change(-own, slope);
+      else if (column.joint >= 0) carried[std::size_t(column.joint)] += carried_change(own, slope);
       continue;
     }
     const int coordinate = chain_.joints[std::size_t(column.joint)].coordinate;

@@ -1,8 +1,11 @@
 #include "urdf_document.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 
+#include "parameter_names.hpp"
 #include "posewright/model/srdf.hpp"
 #include "posewright/support/near_words.hpp"
 #include "posewright/support/text_file.hpp"
@@ -72,6 +75,48 @@ const UrdfLink& base_of(const UrdfTree& tree, const SerialArmSpec& arm, const So
   return arm.base ? named_link(tree, arm, "base", *arm.base, place) : tree.root();
 }
 
+/// Throws InputError for a joint that cannot be held there.
+void require_held(const UrdfJoint& joint, const Measured& value, const SourcePlace& place) {
+  const bool slides = joint.type == UrdfJoint::Type::prismatic;
+  const std::string name = "joint '" + joint.name + "'";
+  if (joint.mimic) throw InputError(place, name + " follows '" + joint.mimic->master + "'", "hold that one");
+  if (!joint.has_axis() || !(joint.axis.norm() > 1e-9))
+    throw InputError(place, name + " has no axis to be held on", "revolute, continuous and prismatic joints are held");
+  if (!fits_unit(value.quantity, slides ? "m" : "rad"))
+    throw InputError(place, name + (slides ? " slides, and is held at an angle" : " turns, and is held at a length"),
+                     slides ? "a length" : "an angle");
+  if (joint.type != UrdfJoint::Type::continuous &&
+      (value.value < joint.limits->lower || value.value > joint.limits->upper))
+    throw InputError(place, fmt::format("{} is held at {:g}, beyond its limits", name, value.value),
+                     fmt::format("{:g} to {:g} {}", joint.limits->lower, joint.limits->upper, slides ? "m" : "rad"));
+}
+
+/// Values of the joints that the problem holds; a glob passes over joints that follow others.
+std::map<std::string, double> held_joints(const UrdfTree& tree, const SerialArmSpec& arm, const SourcePlace& place) {
+  std::map<std::string, double> held;
+  for (const auto& [pattern, value] : arm.hold) {
+    const SourcePlace here{place.file, pattern.line};
+    const bool one = tree.joint(pattern.value) != nullptr;
+    bool any = false;
+    std::vector<std::string> names;
+    for (const auto& [name, joint] : tree.joints()) {
+      if (!joint.moves()) continue;
+      names.push_back(name);
+      if (!matches(pattern.value, name) || (joint.mimic && !one)) continue;
+      require_held(joint, value, here);
+      if (!held.emplace(name, value.value).second)
+        throw InputError(here, "joint '" + name + "' is held twice", "one value for each joint");
+      any = true;
+    }
+    if (!any)
+      throw InputError(here,
+                       "hold: '" + pattern.value + "' is no joint of " + arm.urdf.filename().string() + " that moves" +
+                           meant_instead(pattern.value, names),
+                       "joints: " + names_of(names));
+  }
+  return held;
+}
+
 std::vector<const UrdfJoint*> way_to_root(const UrdfLink& link) {
   std::vector<const UrdfJoint*> joints;
   for (const UrdfJoint* joint = link.above; joint != nullptr; joint = joint->parent->above) joints.push_back(joint);
@@ -97,6 +142,7 @@ UrdfDocument::UrdfDocument(const SerialArmSpec& arm, const SourcePlace& place)
   const SerialArmSpec grouped = with_group(tree_, arm, place);
   base_ = &base_of(tree_, grouped, place);
   tip_ = &tip_of(tree_, grouped, place);
+  tree_.hold(held_joints(tree_, arm, place));
   way_ = way_between(*base_, *tip_);
 }
 

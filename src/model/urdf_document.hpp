@@ -14,16 +14,18 @@ struct UrdfStep {
   const UrdfJoint* joint = nullptr;
   bool backward = false;
 
-  /// Origin of the joint in the direction of the way.
-  Eigen::Isometry3d origin() const { return backward ? joint->X_ParentJoint.inverse() : joint->X_ParentJoint; }
+  /// From one link of the joint to the other in the direction of the way, where it is held, else at zero.
+  Eigen::Isometry3d origin() const { return backward ? joint->X_ParentChild().inverse() : joint->X_ParentChild(); }
 };
 
 /// A URDF file, parsed, and the way from the arm's base link to its tip link: up to the link that both hang on, and
 /// down.
 class UrdfDocument {
  public:
+  /// Joints that the arm holds do not move.
   /// @param place  where the problem file names the robot
-  /// Throws InputError for an unreadable or malformed file and for links that are not there.
+  /// Throws InputError for an unreadable or malformed file, for links that are not there and joints that cannot be
+  /// held.
   UrdfDocument(const SerialArmSpec& arm, const SourcePlace& place);
   /// All of a file that is no robot: base and tip are its root.
   explicit UrdfDocument(const std::filesystem::path& file);

@@ -91,6 +91,15 @@ class ChainBuilder {
   }
 
  private:
+  /// Origin of a joint with those of the joints above it that do not move.
+  static Eigen::Isometry3d behind_moving_joint(const UrdfJoint& joint) {
+    Eigen::Isometry3d X = joint.X_ParentJoint;
+    for (const UrdfJoint* above = joint.parent->above; above != nullptr && !above->moves();
+         above = above->parent->above)
+      X = above->X_ParentChild() * X;
+    return X;
+  }
+
   /// A joint backward stands where its child link is, and turns the other way; its origin follows.
   void move(const UrdfStep& step) {
     const UrdfJoint& joint = *step.joint;
@@ -101,6 +110,7 @@ class ChainBuilder {
     result.name = joint.name;
     result.prismatic = joint.type == UrdfJoint::Type::prismatic;
     result.X_ParentJoint = pending_;
+    if (step.backward) result.X_AboveJoint = behind_moving_joint(joint);
     pending_ = step.backward ? step.origin() : Eigen::Isometry3d::Identity();
     result.axis = step.backward ? Eigen::Vector3d(-joint.axis) : joint.axis;
     if (!(result.axis.norm() > 1e-9))
@@ -150,7 +160,7 @@ class ChainBuilder {
       }
       // In the order of the names, as sums are rounded.
       for (auto branch = link->below.rbegin(); branch != link->below.rend(); ++branch)
-        if (path_.count(*branch) == 0) open.emplace_back((*branch)->child, X_JointLink * (*branch)->X_ParentJoint);
+        if (path_.count(*branch) == 0) open.emplace_back((*branch)->child, X_JointLink * (*branch)->X_ParentChild());
     }
   }
 

@@ -252,6 +252,12 @@ UrdfTree::UrdfTree(const std::string& text, const std::string& file)
   read_materials(*robot);
 }
 
+Eigen::Isometry3d UrdfJoint::X_ParentChild() const {
+  if (!held) return X_ParentJoint;
+  if (type == Type::prismatic) return X_ParentJoint * Eigen::Translation3d(*held * axis.normalized());
+  return X_ParentJoint * Eigen::AngleAxisd(*held, axis.normalized());
+}
+
 UrdfTree::UrdfTree(UrdfTree&&) noexcept = default;
 UrdfTree::~UrdfTree() = default;
 
@@ -312,6 +318,20 @@ void UrdfTree::find_root() {
           std::max(*root_, link, [](const auto& a, const auto& b) { return a.place.line < b.place.line; }).place,
           "neither link '" + root_->name + "' nor '" + name + "' hangs on a joint", "a robot is a tree with one root");
     root_ = &link;
+  }
+}
+
+void UrdfTree::hold(const std::map<std::string, double>& values) {
+  for (const auto& [name, value] : values) joints_.at(name).held = value;
+  for (bool more = true; more;) {
+    more = false;
+    for (auto& [name, joint] : joints_) {
+      if (!joint.mimic || joint.held || !joint.has_axis()) continue;
+      const auto master = joints_.find(joint.mimic->master);
+      if (master == joints_.end() || !master->second.held) continue;
+      joint.held = joint.mimic->multiplier * *master->second.held + joint.mimic->offset;
+      more = true;
+    }
   }
 }
 

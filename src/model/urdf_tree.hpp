@@ -42,10 +42,13 @@ struct UrdfJoint {
   std::optional<UrdfLimits> limits{};
   double soft_lower = 0.0, soft_upper = 0.0;  ///< of <safety_controller>; both 0: none
   std::optional<UrdfMimic> mimic{};
+  std::optional<double> held{};  ///< rad or m: where it stays, by the user's word or its master's
 
-  bool moves() const { return type != Type::fixed; }
+  bool moves() const { return type != Type::fixed && !held; }
   /// Revolute, continuous or prismatic.
   bool has_axis() const { return type == Type::revolute || type == Type::continuous || type == Type::prismatic; }
+  /// Pose of the child in the parent: where the joint is held, else at zero.
+  Eigen::Isometry3d X_ParentChild() const;
 };
 
 struct UrdfLink {
@@ -79,6 +82,10 @@ class UrdfTree {
   /// Null if there is none of that name.
   const UrdfLink* link(const std::string& name) const;
   const UrdfJoint* joint(const std::string& name) const;
+
+  /// Joints stay at these values, rad or m by name, and those that follow them where these put them. Each has an axis
+  /// and follows no other.
+  void hold(const std::map<std::string, double>& values);
 
   /// Throws InputError for a shape that is malformed, unknown or not of positive size.
   std::vector<UrdfShape> collision_shapes(const UrdfLink& link) const;

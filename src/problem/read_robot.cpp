@@ -82,7 +82,7 @@ void read_xacro(const Section& robot, const Value& urdf, SerialArmSpec& arm) {
 }
 
 SerialArmSpec read_serial_arm(const Section& robot, const std::filesystem::path& file, const Packages& packages) {
-  robot.allow({"urdf", "xacro", "srdf", "group", "base", "tip", "placement", "encoder_noise", "parameter_names",
+  robot.allow({"urdf", "xacro", "srdf", "group", "base", "tip", "hold", "placement", "encoder_noise", "parameter_names",
                "elastostatic", "joint_effects", "temperature"});
   SerialArmSpec arm;
   const Value& urdf = robot.at("urdf");
@@ -100,6 +100,9 @@ SerialArmSpec read_serial_arm(const Section& robot, const std::filesystem::path&
   }
   if (const Value* base = robot.find("base")) arm.base = base->exact_name();
   if (const Value* tip = robot.find("tip")) arm.tip = tip->exact_name();
+  if (const Value* hold = robot.find("hold"))
+    for (const yaml::Entry& entry : Section(*hold).entries())
+      arm.hold.emplace_back(entry.key, entry.value.measured({Quantity::angle, Quantity::length}, Sign::any));
   if (const Value* placement = robot.find("placement")) arm.placement = read_placement(Section(*placement));
   if (const Value* noise = robot.find("encoder_noise"))
     arm.encoder_noise = noise->measured({Quantity::angle, Quantity::length}, Sign::not_negative).value;
@@ -165,8 +168,8 @@ RobotSpec read_robot(const Value& value, const std::filesystem::path& file, cons
     model->fail("cannot be combined with robot.urdf", "one of urdf, model is allowed");
   if (model != nullptr) return read_model(*model, robot);
   if (!robot.has("urdf")) {
-    robot.allow(
-        {"urdf", "base", "tip", "placement", "encoder_noise", "parameter_names", "elastostatic", "model", "poses"});
+    robot.allow({"urdf", "base", "tip", "hold", "placement", "encoder_noise", "parameter_names", "elastostatic",
+                 "model", "poses"});
     value.fail("has neither urdf nor model nor poses", "one of them is required");
   }
   return read_serial_arm(robot, file, packages);

@@ -9,6 +9,7 @@
 
 #include "posewright/cell/cell.hpp"
 #include "posewright/criterion/registry.hpp"
+#include "posewright/model/link_geometry.hpp"
 #include "posewright/model/placement.hpp"
 #include "posewright/problem/design_keys.hpp"
 #include "posewright/results/stated_error.hpp"
@@ -33,11 +34,17 @@ constexpr int quick_candidates = 400, quick_restarts = 1;
 using Set = std::vector<std::size_t>;  // indices into the list of places
 
 void require_stations(const Problem& problem) {
+  require_one_instrument(problem, "stations");
   MeasurementSpec measurement = problem.measurement;
   if (stations_of(measurement) == nullptr)
     throw InputError(problem.at(problem.workspace.stations->line),
                      "workspace.stations: this instrument has no stations",
                      "trackers and cameras that measure points do");
+  const auto* arm = std::get_if<SerialArmSpec>(&problem.robot);
+  if (arm != nullptr && root_place(*arm, problem.at(arm->line)).base_moves())
+    throw InputError(problem.at(problem.workspace.stations->line),
+                     "workspace.stations: joints between base and tip move the base, and the instrument with it",
+                     "a base that stands");
 }
 
 /// The body of the instrument stands where the instrument does. With one place it keeps its name; with several there is

@@ -15,8 +15,9 @@ inline Eigen::Isometry3d random_pose(Random& random) {
   return X;
 }
 
-/// Six joints with generic geometry; some prismatic; the last one optionally mimics the second.
-inline ChainDescription random_chain(std::uint64_t seed, bool prismatic, bool mimic) {
+/// Six joints with generic geometry; some prismatic; the last one optionally mimics the second; the first three
+/// optionally passed backward.
+inline ChainDescription random_chain(std::uint64_t seed, bool prismatic, bool mimic, bool backward = false) {
   Random random(seed, 0);
   ChainDescription chain;
   chain.X_MeasureBase = random_pose(random);
@@ -28,6 +29,7 @@ inline ChainDescription random_chain(std::uint64_t seed, bool prismatic, bool mi
     joint.X_ParentJoint = random_pose(random);
     joint.axis = random_pose(random).linear().col(0);
     joint.mimic = mimic && k == 5;
+    if (backward && k < 3) joint.X_AboveJoint = joint.X_ParentJoint;
     if (joint.mimic) {
       joint.coordinate = 1;
       joint.multiplier = -0.7;

@@ -11,7 +11,8 @@ namespace posewright {
 
 /// Pose of the tip in the measurement frame:
 ///   X_MeasureBase D(base) · Π_k [X_ParentJoint,k D_k Motion_k(multiplier ((1 + gear) q + offset) + mimic offset)] ·
-///   X_LastTip D(tool).
+///   X_LastTip D(tool),
+/// with X_ParentJoint,k Motion_k D_k⁻¹ for a joint that is passed backward.
 /// @param correction  all parameters in the order of ChainLayout
 template <class T>
 Frame<T> tip_pose(const ChainDescription& chain, const ChainLayout& layout, const double* q, const T* correction) {
@@ -20,12 +21,16 @@ Frame<T> tip_pose(const ChainDescription& chain, const ChainLayout& layout, cons
   frame.then_displace(correction);
   for (std::size_t k = 0; k < chain.joints.size(); ++k) {
     const ChainJoint& joint = chain.joints[k];
+    const T* d = correction + layout.displacement[k];
     frame.then(joint.X_ParentJoint);
-    frame.then_displace(correction + layout.displacement[k]);
+    if (!joint.backward()) frame.then_displace(d);
     const T* own = correction + layout.offset[std::size_t(joint.coordinate)];
     const T value = joint.multiplier * ((T(1.0) + own[1]) * q[joint.coordinate] + own[0]) + T(joint.offset);
     if (joint.prismatic) frame.then_translate(joint.axis.cast<T>() * value);
     else frame.then_rotate(joint.axis, value);
+    if (!joint.backward()) continue;
+    for (int axis = 0; axis < 3; ++axis) frame.then_rotate(Eigen::Vector3d::Unit(axis), -d[3 + axis]);
+    frame.then_translate({-d[0], -d[1], -d[2]});
   }
   frame.then(chain.X_LastTip);
   frame.then_displace(correction + layout.tool);

@@ -153,8 +153,8 @@ MeasurementSpec tracker() {
 }
 
 TEST(Gradient, OfRandomChainsSeenByATrackerWithEveryKindOfNoise) {
-  for (std::uint64_t seed = 0; seed < 6; ++seed) {
-    ChainDescription chain = random_chain(100 + seed, seed % 2 == 1, seed % 3 == 1);
+  for (std::uint64_t seed = 0; seed < 9; ++seed) {
+    ChainDescription chain = random_chain(100 + seed, seed % 2 == 1, seed % 3 == 1, seed >= 3);
     for (double& sigma : chain.encoder_noise) sigma = 2e-5;
     const MeasurementSpec spec = tracker();
     ExplicitModel model(std::make_unique<SerialChain>(chain), make_measurement(spec), {2e-5, 4e-5, 1e-5});

@@ -103,11 +103,13 @@ TEST(SerialChain, JacobianEqualsAutomaticDifferentiation) {
   pose.instrument = PoseMeasurement{1e-8 * Eigen::Matrix<double, 6, 6>::Identity(), {0, 1, 2, 3, 4, 5}, {}, 0};
   for (const bool prismatic : {false, true})
     for (const bool mimic : {false, true})
-      for (const double size : {0.0, 1e-3, 0.1}) {
-        const ChainDescription chain = random_chain(7, prismatic, mimic);
-        EXPECT_LT(worst_relative_error(chain, points(), 250, size, 1), 1e-10) << prismatic << mimic << size;
-        EXPECT_LT(worst_relative_error(chain, pose, 250, size, 2), 1e-10) << prismatic << mimic << size;
-      }
+      for (const bool backward : {false, true})
+        for (const double size : {0.0, 1e-3, 0.1}) {
+          const ChainDescription chain = random_chain(7, prismatic, mimic, backward);
+          EXPECT_LT(worst_relative_error(chain, points(), 250, size, 1), 1e-10)
+              << prismatic << mimic << backward << size;
+          EXPECT_LT(worst_relative_error(chain, pose, 250, size, 2), 1e-10) << prismatic << mimic << backward << size;
+        }
 }
 
 TEST(SerialChain, JacobianOfSharedRobotsEqualsAutomaticDifferentiation) {

@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "posewright/model/corrected_urdf.hpp"
+#include "posewright/model/dh_chain.hpp"
 #include "posewright/model/link_geometry.hpp"
 #include "posewright/model/serial_chain.hpp"
 #include "posewright/model/urdf_reader.hpp"
@@ -60,9 +61,19 @@ SerialArmSpec arm_of(const std::filesystem::path& urdf, const std::string& base,
   return arm;
 }
 
-/// Values of all joints of the way.
-Values values_of(const ChainDescription& chain, const std::vector<double>& q) {
+/// Values of the joints that are held and of those that follow them.
+Values held_by(const SerialArmSpec& arm) {
   Values values;
+  for (const auto& [name, value] : arm.hold) values[name.value] = value.value;
+  const UrdfDocument whole = UrdfDocument::whole(arm);
+  for (const auto& [name, joint] : whole.tree().joints())
+    if (joint.mimic && values.count(joint.mimic->master) > 0)
+      values[name] = joint.mimic->multiplier * values.at(joint.mimic->master) + joint.mimic->offset;
+  return values;
+}
+
+/// With those of all joints of the way.
+Values values_of(Values values, const ChainDescription& chain, const std::vector<double>& q) {
   for (std::size_t i = 0; i < q.size(); ++i) values[chain.coordinates[i].name] = q[i];
   for (const ChainJoint& joint : chain.joints)
     values[joint.name] = joint.multiplier * q[std::size_t(joint.coordinate)] + joint.offset;
@@ -83,11 +94,39 @@ Eigen::Isometry3d tip_of(const SerialChain& chain, const std::vector<double>& q,
   return X;
 }
 
+/// The tip by the tree alone: each joint of the way is displaced in the sense of the URDF, whichever way it is passed.
+Eigen::Isometry3d by_tree(const SerialArmSpec& arm, PlainUrdf plain, const Values& held, const SerialChain& model,
+                          const std::vector<double>& q, const std::vector<double>& correction) {
+  const ChainDescription& chain = model.description();
+  std::map<std::string, double> of;
+  for (std::size_t i = 0; i < correction.size(); ++i) of[model.parameters()[i].name] = correction[i];
+  const auto displacement = [&](const std::string& name) {
+    Eigen::Isometry3d D = Eigen::Isometry3d::Identity();
+    D.translate(Eigen::Vector3d(of[name + ".x"], of[name + ".y"], of[name + ".z"]));
+    D.rotate(Eigen::AngleAxisd(of[name + ".rz"], Eigen::Vector3d::UnitZ()));
+    D.rotate(Eigen::AngleAxisd(of[name + ".ry"], Eigen::Vector3d::UnitY()));
+    D.rotate(Eigen::AngleAxisd(of[name + ".rx"], Eigen::Vector3d::UnitX()));
+    return D;
+  };
+  Values values = values_of(held, chain, q);
+  for (const ChainJoint& joint : chain.joints) {
+    for (const ChainJoint& own : chain.joints)
+      if (!own.mimic && own.coordinate == joint.coordinate)
+        values[joint.name] +=
+            joint.multiplier * (of[own.name + ".gear"] * q[std::size_t(joint.coordinate)] + of[own.name + ".offset"]);
+    for (auto& [link, above] : plain.above)
+      if (above.name == joint.name) above.X_ParentJoint = above.X_ParentJoint * displacement(joint.name);
+  }
+  return displacement("base") * plain.pose(arm.base->value, values).inverse() * plain.pose(arm.tip->value, values) *
+         displacement("tool");
+}
+
 double off(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
   return (a.matrix() - b.matrix()).cwiseAbs().maxCoeff();
 }
 
-/// Calls act(arm, chain) for pairs of links of random trees with a joint that moves between.
+/// Calls act(arm, document, chain, random) for pairs of links of random trees with a joint that moves between; every
+/// other one holds joints anywhere in the tree.
 template <class Act>
 int for_random_ways(const TemporaryFolder& folder, int trees, const Act& act) {
   int backward = 0;
@@ -95,8 +134,11 @@ int for_random_ways(const TemporaryFolder& folder, int trees, const Act& act) {
     const std::filesystem::path urdf = folder.write(fmt::format("tree{}.urdf", seed), random_tree(std::uint64_t(seed)));
     Random random(std::uint64_t(seed), 1);
     for (int i = 0; i < 6; ++i) {
-      const SerialArmSpec arm =
-          arm_of(urdf, fmt::format("l{}", random.index(14)), fmt::format("l{}", random.index(14)));
+      SerialArmSpec arm = arm_of(urdf, fmt::format("l{}", random.index(14)), fmt::format("l{}", random.index(14)));
+      const UrdfDocument whole = UrdfDocument::whole(arm);
+      for (const auto& [name, joint] : whole.tree().joints())
+        if (i % 2 == 1 && joint.moves() && !joint.mimic && random.index(4) == 0)
+          arm.hold.push_back({{name, 5}, {random.uniform(-2, 2), Quantity::number}});
       const UrdfDocument document(arm, {"p.yaml", 1});
       if (std::ranges::none_of(document.way(), [](const UrdfStep& s) { return s.joint->moves(); })) continue;
       backward += document.moves_base() ? 1 : 0;
@@ -127,8 +169,8 @@ TEST(UrdfDocument, HasTheWayUpToTheLinkThatBothHangOnAndDown) {
   EXPECT_THAT(way("lh", "pelvis"), ElementsAre("-l2", "-l1", "-waist"));
   EXPECT_THAT(way("torso", "lh"), ElementsAre("+l1", "+l2"));
   EXPECT_THAT(way("la", "la"), ElementsAre());
-  EXPECT_TRUE(base_moves(arm_of(urdf, "lh", "rh"), {}));
-  EXPECT_FALSE(base_moves(arm_of(urdf, "torso", "rh"), {}));
+  EXPECT_TRUE(root_place(arm_of(urdf, "lh", "rh"), {}).base_moves());
+  EXPECT_FALSE(root_place(arm_of(urdf, "torso", "rh"), {}).base_moves());
 }
 
 TEST(UrdfDocument, OfAnyTwoLinksIsTheChainBetweenThem) {
@@ -139,7 +181,7 @@ TEST(UrdfDocument, OfAnyTwoLinksIsTheChainBetweenThem) {
         const SerialChain model(chain);
         for (int i = 0; i < 5; ++i) {
           const std::vector<double> q = some_configuration(chain, random);
-          const Values values = values_of(chain, q);
+          const Values values = values_of(held_by(arm), chain, q);
           const Eigen::Isometry3d expected =
               plain.pose(arm.base->value, values).inverse() * plain.pose(arm.tip->value, values);
           ASSERT_LT(off(tip_of(model, q, {}), expected), 1e-12) << arm.urdf << arm.base->value << arm.tip->value;
@@ -148,11 +190,14 @@ TEST(UrdfDocument, OfAnyTwoLinksIsTheChainBetweenThem) {
   EXPECT_GT(backward, 100);
 }
 
-TEST(UrdfDocument, OfAnyTwoLinksHasTheColumnsOfCentralDifferences) {
+TEST(UrdfDocument, OfAnyTwoLinksHasTheColumnsOfTheTreeWithDisplacedJoints) {
   const TemporaryFolder folder;
   constexpr double step = 1e-5;
-  for_random_ways(folder, 15, [](const SerialArmSpec& arm, const auto&, const auto& chain, auto& random) {
+  int configurations = 0;
+  for_random_ways(folder, 250, [&](const SerialArmSpec& arm, const auto&, const auto& chain, auto& random) {
+    ++configurations;
     const PlainUrdf plain(arm.urdf);
+    const Values held = held_by(arm);
     const SerialChain model(chain);
     std::vector<int> all(model.parameters().size());
     std::iota(all.begin(), all.end(), 0);
@@ -161,6 +206,7 @@ TEST(UrdfDocument, OfAnyTwoLinksHasTheColumnsOfCentralDifferences) {
     Eigen::Isometry3d X;
     Twists columns, readings;
     model.linearise({q, correction}, all, X, columns, nullptr);
+    ASSERT_LT(off(X, by_tree(arm, plain, held, model, q, correction)), 1e-12) << arm.urdf;
     const auto expect_twist = [&](const Twist& column, const Eigen::Isometry3d& before, const Eigen::Isometry3d& after,
                                   const Eigen::Isometry3d& at) {
       const Eigen::Matrix3d W = (after.linear() - before.linear()) * at.linear().transpose() / (2 * step);
@@ -174,7 +220,8 @@ TEST(UrdfDocument, OfAnyTwoLinksHasTheColumnsOfCentralDifferences) {
       std::vector<double> less = correction, more = correction;
       less[p] -= step;
       more[p] += step;
-      expect_twist(columns.col(Eigen::Index(p)), tip_of(model, q, less), tip_of(model, q, more), X);
+      expect_twist(columns.col(Eigen::Index(p)), by_tree(arm, plain, held, model, q, less),
+                   by_tree(arm, plain, held, model, q, more), X);
     }
     // Readings by the other road: nothing is corrected.
     model.linearise({q, {}}, {}, X, columns, &readings);
@@ -183,10 +230,35 @@ TEST(UrdfDocument, OfAnyTwoLinksHasTheColumnsOfCentralDifferences) {
       less[i] -= step;
       more[i] += step;
       const auto pose = [&](const std::vector<double>& at) {
-        const Values values = values_of(chain, at);
+        const Values values = values_of(held, chain, at);
         return plain.pose(arm.base->value, values).inverse() * plain.pose(arm.tip->value, values);
       };
       expect_twist(readings.col(Eigen::Index(i)), pose(less), pose(more), pose(q));
+    }
+  });
+  EXPECT_GE(configurations, 1000);
+}
+
+TEST(UrdfDocument, GivesJointsTheSameNominalValuesWhicheverWayTheyArePassed) {
+  const TemporaryFolder folder;
+  for_random_ways(folder, 20, [](const SerialArmSpec& arm, const auto&, const auto& chain, auto&) {
+    const SerialChain own(chain);
+    SerialArmSpec from_root = arm;
+    from_root.base->value = "l0";
+    for (const char* end : {"base", "tip"}) {
+      from_root.tip = std::string(end) == "base" ? arm.base : arm.tip;
+      const UrdfDocument way(from_root, {});
+      if (std::ranges::none_of(way.way(), [](const UrdfStep& s) { return s.joint->moves(); })) continue;
+      const SerialChain forward(read_urdf_chain(from_root, {}));
+      for (const Parameter& p : own.parameters()) {
+        const std::string joint = p.name.substr(0, p.name.rfind('.'));
+        const bool backward =
+            std::ranges::any_of(chain.joints, [&](const ChainJoint& j) { return j.name == joint && j.backward(); });
+        if (!backward) continue;
+        for (const Parameter& same : forward.parameters()) {
+          if (same.name == p.name) ASSERT_NEAR(p.nominal, same.nominal, 1e-12) << p.name;
+        }
+      }
     }
   });
 }
@@ -196,7 +268,7 @@ TEST(UrdfDocument, OfAnyTwoLinksPutsEveryLinkOnTheFrameThatMovesIt) {
   for_random_ways(folder, 30, [](const SerialArmSpec& arm, const auto&, const auto& chain, auto& random) {
     const PlainUrdf plain(arm.urdf);
     const std::vector<double> q = some_configuration(chain, random);
-    const Values values = values_of(chain, q);
+    const Values values = values_of(held_by(arm), chain, q);
     std::vector<Eigen::Isometry3d> frames{Eigen::Isometry3d::Identity()};
     Frame<double> at;
     for (const ChainJoint& joint : chain.joints) {
@@ -212,7 +284,8 @@ TEST(UrdfDocument, OfAnyTwoLinksPutsEveryLinkOnTheFrameThatMovesIt) {
     Values still = values;
     const UrdfDocument document(arm, {});
     for (const auto& [name, joint] : document.tree().joints())
-      if (std::ranges::find(document.way(), &joint, &UrdfStep::joint) == document.way().end()) still.erase(name);
+      if (!joint.held && std::ranges::find(document.way(), &joint, &UrdfStep::joint) == document.way().end())
+        still.erase(name);
     const std::vector<LinkGeometry> links = read_urdf_links(arm, {});
     ASSERT_EQ(links.size(), 14U);
     for (const LinkGeometry& link : links) {
@@ -231,15 +304,14 @@ TEST(UrdfDocument, OfAnyTwoLinksIsCorrectedInTheFile) {
   for_random_ways(
       folder, 40, [&](const SerialArmSpec& arm, const UrdfDocument& document, const auto& chain, auto& random) {
         const SerialChain model(chain);
-        const UrdfStep &first = document.way().front(), &last = document.way().back();
+        const UrdfStep& last = document.way().back();
         std::vector<CalibratedValue> values;
         std::vector<double> correction;
         for (const Parameter& p : model.parameters()) {
-          // Not the robot's: its base, what displaces the base's own joint, a tool without an origin, gears.
+          // Not the robot's: its base, a tool without an origin, gears.
           const std::string name = p.name.substr(0, p.name.rfind('.'));
-          const bool of_base =
-              name == "base" || (first.backward && name == first.joint->name && !p.name.ends_with(".offset"));
-          const bool of_tool = name == "tool" && !last.backward && last.joint->moves();
+          const bool of_base = name == "base";
+          const bool of_tool = name == "tool" && !last.backward && last.joint->type != UrdfJoint::Type::fixed;
           const bool stray = std::ranges::any_of(document.tree().joints(), [&](const auto& entry) {
             return entry.second.mimic && p.name == entry.second.mimic->master + ".offset";
           });
@@ -253,7 +325,7 @@ TEST(UrdfDocument, OfAnyTwoLinksIsCorrectedInTheFile) {
         const PlainUrdf plain(folder.write("written.urdf", corrected.text));
         for (int i = 0; i < 5; ++i) {
           const std::vector<double> q = some_configuration(chain, random);
-          const Values at = values_of(chain, q);
+          const Values at = values_of(held_by(arm), chain, q);
           const Eigen::Isometry3d found = plain.pose(arm.base->value, at).inverse() * plain.pose(arm.tip->value, at);
           ASSERT_LT(off(tip_of(model, q, correction), found), 1e-11) << arm.urdf << arm.base->value << arm.tip->value;
         }
@@ -281,12 +353,81 @@ TEST(UrdfDocument, CorrectsTheOffsetOfAJointThatIsPassedBackwardInItsOwnOrigin) 
         const PlainUrdf after(
             folder.write("written.urdf", corrected_urdf(arm, {}, VariantSpec::Convention::frames, values).text));
         // Every link of the robot is where the old file puts it with readings that are right.
-        const Values at = values_of(chain, some_configuration(chain, random));
+        const Values at = values_of(held_by(arm), chain, some_configuration(chain, random));
         Values right = at;
         for (const auto& [name, offset] : offsets) right[name] += offset;
         for (const auto& [name, link] : document.tree().links())
           ASSERT_LT(off(before.pose(name, right), after.pose(name, at)), 1e-11) << arm.urdf << name;
       });
+}
+
+TEST(UrdfDocument, IsCorrectedByDenavitHartenbergParametersOfAnyWay) {
+  const TemporaryFolder folder;
+  int backward = 0;
+  for_random_ways(
+      folder, 40, [&](const SerialArmSpec& arm, const UrdfDocument& document, const auto& chain, auto& random) {
+        if (std::ranges::any_of(chain.joints, [](const ChainJoint& j) { return j.multiplier != 1 || j.offset != 0; }))
+          return;
+        const DhChain model(denavit_hartenberg(chain, DhConvention::distal));
+        std::vector<CalibratedValue> values;
+        std::vector<double> correction;
+        for (const Parameter& p : model.parameters()) {
+          correction.push_back(random.uniform(-0.02, 0.02));
+          values.push_back({p.name, p.unit, p.nominal, p.nominal + correction.back()});
+        }
+        const auto convention = VariantSpec::Convention::dh;
+        const ChainCorrection parts = chain_correction(chain, convention, values);
+        const PlainUrdf plain(folder.write("written.urdf", corrected_urdf(arm, {}, convention, values).text));
+        const UrdfStep& last = document.way().back();
+        const bool has_tool = last.backward || last.joint->type == UrdfJoint::Type::fixed;
+        for (int i = 0; i < 5; ++i) {
+          const std::vector<double> q = some_configuration(chain, random);
+          Eigen::Isometry3d X;
+          Twists none;
+          model.linearise({q, correction}, {}, X, none, nullptr);
+          const Values at = values_of(held_by(arm), chain, q);
+          Eigen::Isometry3d found =
+              parts.base.X * plain.pose(arm.base->value, at).inverse() * plain.pose(arm.tip->value, at);
+          if (!has_tool) found = found * parts.tip.X;
+          ASSERT_LT(off(X, found), 1e-9) << arm.urdf << arm.base->value << arm.tip->value;
+          ASSERT_LT(off(X, tip_of(SerialChain(corrected_chain(chain, parts)), q, {})), 1e-9);
+        }
+        backward += document.moves_base() ? 1 : 0;
+      });
+  EXPECT_GT(backward, 20);
+}
+
+TEST(UrdfDocument, RefusesToHoldWhatCannotBeHeld) {
+  const TemporaryFolder folder;
+  SerialArmSpec arm = arm_of(folder.write("r.urdf", R"(<robot name="r"><link name="a"/><link name="b"/><link name="c"/>
+    <link name="d"/><link name="e"/>
+    <joint name="head_pan" type="revolute"><parent link="a"/><child link="b"/><limit lower="-1" upper="1" effort="1"
+      velocity="1"/></joint>
+    <joint name="lift" type="prismatic"><parent link="b"/><child link="c"/><limit lower="0" upper="1" effort="1"
+      velocity="1"/></joint>
+    <joint name="finger" type="continuous"><parent link="c"/><child link="d"/><mimic joint="lift"/></joint>
+    <joint name="mount" type="fixed"><parent link="d"/><child link="e"/></joint></robot>)"),
+                             "a", "e");
+  const auto message = [&](const std::vector<std::pair<std::string, Measured>>& hold) -> std::string {
+    arm.hold.clear();
+    for (const auto& [name, value] : hold) arm.hold.push_back({{name, 7}, value});
+    try {
+      read_urdf_chain(arm, {"p.yaml", 1});
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return {};
+  };
+  EXPECT_EQ(message({{"head_*", {0.5, Quantity::angle}}}), "");
+  EXPECT_THAT(message({{"haed_pan", {}}}), HasSubstr("p.yaml:7: hold: 'haed_pan' is no joint of r.urdf that moves"));
+  EXPECT_THAT(message({{"mount", {}}}), HasSubstr("'mount' is no joint of r.urdf that moves"));
+  EXPECT_THAT(message({{"finger", {}}}), HasSubstr("joint 'finger' follows 'lift'"));
+  EXPECT_THAT(message({{"f*", {}}}), HasSubstr("'f*' is no joint"));
+  EXPECT_THAT(message({{"lift", {0.5, Quantity::angle}}}), HasSubstr("joint 'lift' slides, and is held at an angle"));
+  EXPECT_THAT(message({{"head_pan", {0.5, Quantity::length}}}), HasSubstr("turns, and is held at a length"));
+  EXPECT_THAT(message({{"head_pan", {2, Quantity::angle}}}), HasSubstr("held at 2, beyond its limits"));
+  EXPECT_THAT(message({{"head_pan", {}}, {"head_*", {}}}), HasSubstr("joint 'head_pan' is held twice"));
+  EXPECT_THAT(message({{"*", {}}}), HasSubstr("no joint moves between 'a' and 'e'"));
 }
 
 TEST(UrdfDocument, OfAMovedBaseHasNoSprings) {

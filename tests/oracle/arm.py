@@ -36,18 +36,25 @@ def displaced(values):
     return frame(values[:3], rpy(*values[3:]))
 
 
-def joints_of(urdf, tip):
-    """From the base to the tip: name, frame in its parent, axis (None where it is fixed)."""
+def joints_of(urdf, tip, base=None):
+    """From base (default: the root) to tip: name, frame in its parent, axis (None where it is fixed), whether it is passed
+    from its child to its parent."""
     by_child = {j.find("child").get("link"): j for j in xml.etree.ElementTree.parse(urdf).getroot().iter("joint")}
-    chain = []
-    while tip in by_child:
-        joint = by_child[tip]
+
+    def to_root(link):
+        found = []
+        while link in by_child:
+            found.append(by_child[link])
+            link = by_child[link].find("parent").get("link")
+        return found
+
+    up, down, chain = to_root(base), to_root(tip), []
+    for joint in [j for j in up if j not in down] + [j for j in reversed(down) if base is None or j not in up]:
         origin, axis = joint.find("origin"), joint.find("axis")
         numbers = {key: [float(x) for x in ((origin.get(key) if origin is not None else None) or "0 0 0").split()] for key in ("xyz", "rpy")}
         moves = joint.get("type") != "fixed"
-        chain.insert(0, (joint.get("name"), frame(numbers["xyz"], rpy(*numbers["rpy"])),
-                         [float(x) for x in axis.get("xyz").split()] if moves else None))
-        tip = joint.find("parent").get("link")
+        chain.append((joint.get("name"), frame(numbers["xyz"], rpy(*numbers["rpy"])),
+                      [float(x) for x in axis.get("xyz").split()] if moves else None, joint in up))
     return chain
 
 
@@ -59,13 +66,13 @@ def readings(chain, targets, q, change, off=np.zeros(6)):
     tip stands off, a translation and a rotation about itself in the axes of the measurement frame."""
     of = lambda name: [change.get(f"{name}.{axis}", 0.0) for axis in AXES]
     X, k = displaced(of("base")), 0
-    for name, X_ParentJoint, axis in chain:
-        X = X @ X_ParentJoint @ displaced(of(name))
-        if axis is None:
-            continue
-        gear = 1 + change.get(f"{name}.gear", 0.0)
-        X = X @ frame(R=rotation(axis, q[k] * gear + change.get(f"{name}.offset", 0.0)))
-        k += 1
+    for name, X_ParentJoint, axis, up in chain:
+        X_ParentChild = X_ParentJoint @ displaced(of(name))
+        if axis is not None:
+            gear = 1 + change.get(f"{name}.gear", 0.0)
+            X_ParentChild = X_ParentChild @ frame(R=rotation(axis, q[k] * gear + change.get(f"{name}.offset", 0.0)))
+            k += 1
+        X = X @ (np.linalg.inv(X_ParentChild) if up else X_ParentChild)
     X = X @ displaced(of("tool"))
     X[:3, 3] += off[:3]
     if np.any(off[3:]):

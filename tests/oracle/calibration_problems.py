@@ -7,11 +7,12 @@ from statistics_by_definition import Poses, default_tolerance
 FRAMES = ["x", "y", "z", "rx", "ry", "rz"]
 
 
-def random_urdf(random, joints):
+def random_urdf(random, joints, base=0):
+    """Joints j1 … jN; joint `base` + 1 hangs on the root beside the first `base` ones."""
     numbers = lambda values: " ".join(f"{v:.6f}" for v in values)
     text = '<robot name="random"><link name="l0"/>'
     for k in range(1, joints + 1):
-        text += (f'<link name="l{k}"/><joint name="j{k}" type="revolute"><parent link="l{k - 1}"/><child link="l{k}"/>'
+        text += (f'<link name="l{k}"/><joint name="j{k}" type="revolute"><parent link="l{0 if k == base + 1 else k - 1}"/><child link="l{k}"/>'
                  f'<origin xyz="{numbers(random.uniform(-0.6, 0.6, 3))}" rpy="{numbers(random.uniform(-3, 3, 3))}"/>'
                  f'<axis xyz="{numbers(random.normal(size=3))}"/><limit lower="-2" upper="2.5" effort="0" velocity="1"/></joint>')
     return text + "</robot>"
@@ -40,9 +41,11 @@ def random_placement(random, reach):
 
 def random_problem(folder, random, joints=None, edit=None):
     joints = joints or int(random.integers(2, 7))
-    (folder / "arm.urdf").write_text(random_urdf(random, joints))
+    # An arm of five joints goes up two and down three.
+    base = 2 if joints == 5 else 0
+    (folder / "arm.urdf").write_text(random_urdf(random, joints, base))
     targets = {f"T{k}": [float(f"{v:.4f}") for v in random.uniform(-0.3, 0.3, 3)] for k in range(random.integers(1, 5))}
-    robot = {"urdf": "arm.urdf", "base": "l0", "tip": f"l{joints}"}
+    robot = {"urdf": "arm.urdf", "base": f"l{base}", "tip": f"l{joints}"}
     measurement = {"type": "points", "targets": targets, "repeats": int(random.integers(1, 4)), "device": random_device(random)}
     if measurement["device"]["type"] == "laser_tracker" or random.random() < 0.3:
         robot["placement"] = random_placement(random, 1)
@@ -56,18 +59,20 @@ def random_problem(folder, random, joints=None, edit=None):
         robot["encoder_noise"] = f"{random.uniform(0.01, 0.2):.4f} mrad"
     if edit:
         edit(robot, measurement)
-    problem = {"posewright": 1, "robot": robot, "measurement": measurement, "variants": {"fitted": random_variant(random, joints)},
+    problem = {"posewright": 1, "robot": robot, "measurement": measurement, "variants": {"fitted": random_variant(random, joints, base)},
                "design": {"poses": 9}}
     (folder / "problem.yaml").write_text(yaml.safe_dump(problem))
 
 
-def random_variant(random, joints):
+def random_variant(random, joints, base):
     nuisance = ["base.*", "target.*"] if random.random() < 0.7 else ["base.*"]
     if random.random() < 0.5:
         variant = {"parameters": "auto", "nuisance": nuisance}
     else:
-        # Some columns that a generic arm can tell apart; the base takes what the first joint's frame would.
+        # Some columns that a generic arm can tell apart; the base takes what the first joint's frame, or the offset of
+        # one that is passed backward, would.
         names = [f"j{k}.{a}" for k in range(2, joints + 1) for a in FRAMES + ["offset", "gear"] if random.random() < 0.4]
+        names = [name for name in names if name != f"j{base}.offset"]
         variant = {"parameters": names or ["j2.offset"], "nuisance": nuisance}
     if random.random() < 0.5:
         tolerance = {"*.offset": f"{random.uniform(0.02, 0.2):.3f} deg", "j2.x": "0.2 mm"}

@@ -145,11 +145,14 @@ class Camera:
         self.stands = stands_at("camera", self.X_camera) | stands_at("board", self.X_board)
         self.rows, self.columns = board["rows"], board["columns"]
 
-    def in_camera(self, X, values):
-        """The board's points in the camera's frame, a row each."""
+    def board_in_camera(self, X, values):
         camera, board = self.X_camera @ displacement(values, "camera"), self.X_board @ displacement(values, "board")
         camera, board = (X @ camera, board) if self.on_hand else (camera, X @ board)
-        X_CameraBoard = np.linalg.inv(camera) @ board
+        return np.linalg.inv(camera) @ board
+
+    def in_camera(self, X, values):
+        """The board's points in the camera's frame, a row each."""
+        X_CameraBoard = self.board_in_camera(X, values)
         return values["pattern.scale"] * self.points @ X_CameraBoard[:3, :3].T + X_CameraBoard[:3, 3]
 
     def read(self, X, values, station, seen_from):
@@ -158,6 +161,11 @@ class Camera:
     def seen(self, X, values, station):
         numbers = [f"point {r},{c}" for r in range(1, self.rows + 1) for c in range(1, self.columns + 1)]
         return dict(zip(numbers, self.in_camera(X, values)))
+
+    def incidence(self, X, faces, seen, values, station):
+        """Angle between where a point of the board faces (board frame) and the line to the camera, the point seen at `seen`."""
+        normal = self.board_in_camera(X, values)[:3, :3] @ np.array(faces, float)
+        return np.arccos(-normal @ seen / np.linalg.norm(normal) / np.linalg.norm(seen))
 
     def noise(self, X, values, station):
         return self.pixels**2 * np.eye(2 * len(self.points))

@@ -1,7 +1,8 @@
 """A serial arm by definition: a URDF's chain multiplied out, joints that are springs under a load.
 
-Parameters: base.*, NAME.{x … rz} of every moving joint's frame before it moves, NAME.offset, NAME.gear, tool.*; with springs
+Parameters: base.*, NAME.{x … rz} of every moving joint's frame in its parent before it moves, NAME.offset, NAME.gear, tool.*; with springs
 NAME.compliance and what stands for it."""
+import fnmatch
 import xml.etree.ElementTree
 
 import numpy as np
@@ -16,10 +17,10 @@ def numbers(element, key, default):
 
 class Joint:
     """A moving joint; the fixed ones before it are in `parent`. `bodies`: what it carries up to the next, (kg, m).
-    Passed from child to parent it moves the other way, and its frame is displaced on the child link."""
+    Passed from child to parent, it moves the other way. `origin`: from the joint that moves above it in the URDF."""
 
-    def __init__(self, element, parent, backward=False):
-        self.name, self.parent, self.bodies = element.get("name"), parent, []
+    def __init__(self, element, parent, origin, backward=False):
+        self.name, self.parent, self.bodies, self.origin, self.backward = element.get("name"), parent, [], origin, backward
         axis = np.array(numbers(element.find("axis"), "xyz", "1 0 0"))
         self.axis, self.prismatic = axis / np.linalg.norm(axis), element.get("type") == "prismatic"
         if backward:
@@ -33,8 +34,26 @@ class Joint:
     def motion(self, by):
         return frame(by * self.axis) if self.prismatic else frame(R=turn(self.axis, by))
 
+    def moved(self, by, displaced):
+        """From the frame before the joint to that behind it."""
+        if self.backward:
+            return self.parent @ self.motion(by) @ np.linalg.inv(displaced)
+        return self.parent @ displaced @ self.motion(by)
 
-def read_chain(urdf, base, tip):
+
+def held_values(hold, elements):
+    """Where joints that do not move are held, by name, those that follow them too."""
+    movable = {e.get("name"): e for e in elements if e.get("type") != "fixed"}
+    held = {name: si(value) for pattern, value in hold.items() for name, e in movable.items()
+            if fnmatch.fnmatchcase(name, pattern) and e.find("mimic") is None}
+    for name, e in movable.items():
+        mimic = e.find("mimic")
+        if mimic is not None and mimic.get("joint") in held:
+            held[name] = float(mimic.get("multiplier", 1)) * held[mimic.get("joint")] + float(mimic.get("offset", 0))
+    return held
+
+
+def read_chain(urdf, base, tip, hold):
     """The moving joints from base to tip and the frame of the tip in the last one's."""
     root = xml.etree.ElementTree.parse(urdf).getroot()
     elements, links = list(root.iter("joint")), {link.get("name"): link for link in root.findall("link")}
@@ -52,15 +71,31 @@ def read_chain(urdf, base, tip):
         down.insert(0, by_child[link])
         link = by_child[link].find("parent").get("link")
     backward = up[:ancestors.index(link)] if base is not None else []
-    joints, X = [], np.eye(4)
-    for element in backward + down:
+    held = held_values(hold, elements)
+
+    def moves(element):
+        return element.get("type") != "fixed" and element.get("name") not in held
+
+    def origin_of(element):
         origin = element.find("origin")
         passed = frame(numbers(origin, "xyz", "0 0 0"), turn_rpy(*numbers(origin, "rpy", "0 0 0")))
+        still = element.get("name") in held
+        return passed @ Joint(element, None, None).motion(held[element.get("name")]) if still else passed
+
+    def origin_behind_moving(element):
+        X, above = origin_of(element), by_child.get(element.find("parent").get("link"))
+        while above is not None and not moves(above):
+            X, above = origin_of(above) @ X, by_child.get(above.find("parent").get("link"))
+        return X
+
+    joints, X = [], np.eye(4)
+    for element in backward + down:
+        passed = origin_of(element)
         up_the_tree = element in backward
         if not up_the_tree:
             X = X @ passed
-        if element.get("type") != "fixed":
-            joints.append(Joint(element, X, up_the_tree))
+        if moves(element):
+            joints.append(Joint(element, X, origin_behind_moving(element) if up_the_tree else X, up_the_tree))
             X = np.eye(4)
         if up_the_tree:
             X = X @ np.linalg.inv(passed)
@@ -74,7 +109,8 @@ def read_chain(urdf, base, tip):
 
 class SerialArm:
     def __init__(self, spec, folder):
-        self.joints, self.X_LastTip = read_chain(folder / spec["urdf"], spec.get("base"), spec.get("tip"))
+        self.joints, self.X_LastTip = read_chain(folder / spec["urdf"], spec.get("base"), spec.get("tip"),
+                                                 spec.get("hold", {}))
         self.X_MeasureBase = placement(spec.get("placement"))
         self.coordinates = [joint.name for joint in self.joints if joint.mimic is None]
         self.reading_noise = np.full(len(self.coordinates), si(spec.get("encoder_noise", 0)))
@@ -82,7 +118,7 @@ class SerialArm:
         self.nominal, self.stands = six("base") | six("tool"), stands_at("base", self.X_MeasureBase) | stands_at("tool", self.X_LastTip)
         for joint in self.joints:
             self.nominal |= six(joint.name)
-            self.stands |= stands_at(joint.name, joint.parent)
+            self.stands |= stands_at(joint.name, joint.origin)
             if joint.mimic is None:
                 self.nominal |= {f"{joint.name}.offset": 0.0, f"{joint.name}.gear": 0.0}
         if self.springs:
@@ -92,7 +128,7 @@ class SerialArm:
         """The frame of every joint in the measurement frame, moved, and that of the tip; moved: by how much, by name."""
         X, found = self.X_MeasureBase @ displacement(values, "base"), []
         for joint in self.joints:
-            X = X @ joint.parent @ displacement(values, joint.name) @ joint.motion(joint.ratio * moved[joint.leader] + joint.start)
+            X = X @ joint.moved(joint.ratio * moved[joint.leader] + joint.start, displacement(values, joint.name))
             found.append(X)
         return found, X @ self.X_LastTip @ displacement(values, "tool")
 

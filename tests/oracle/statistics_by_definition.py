@@ -63,8 +63,8 @@ class Arm:
     def __init__(self, problem_file):
         self.problem = yaml.safe_load(problem_file.read_text())
         robot, self.measurement = self.problem["robot"], self.problem["measurement"]
-        self.chain = joints_of(problem_file.parent / robot["urdf"], robot["tip"])
-        self.joints = [name for name, _, axis in self.chain if axis is not None]
+        self.chain = joints_of(problem_file.parent / robot["urdf"], robot["tip"], robot.get("base"))
+        self.joints = [name for name, _, axis, _ in self.chain if axis is not None]
         self.own = robot.get("parameter_names", {})
         self.placement = self.frame_of(robot.get("placement", {}))
         self.targets = {n: np.array([si(v) for v in p]) for n, p in self.measurement["targets"].items()}
@@ -86,7 +86,7 @@ class Arm:
     def own_value(self, name):
         """A joint frame stands where the URDF has it: x, y, z are that place along its own axes; a target's are its own."""
         kind, axis = self.own.get(name, name).rsplit(".", 1)
-        for joint, X_ParentJoint, _ in self.chain:
+        for joint, X_ParentJoint, _, _ in self.chain:
             if joint == kind and axis in ("x", "y", "z"):
                 return float(X_ParentJoint[:3, 3] @ X_ParentJoint[:3, "xyz".index(axis)])
         return float(self.targets[kind[7:]]["xyz".index(axis)]) if kind.startswith("target.") else 0.0
@@ -100,13 +100,13 @@ class Arm:
         change = {self.own.get(name, name): np.asarray(value)[..., None] for name, value in change.items()}
         of = lambda name: displaced([change.get(f"{name}.{axis}", np.zeros(1)) for axis in AXES])
         X, k = self.placement @ of("base"), 0
-        for name, X_ParentJoint, axis in self.chain:
-            X = X @ (X_ParentJoint @ of(name))
-            if axis is None:
-                continue
-            gear = 1 + change.get(f"{name}.gear", np.zeros(1))
-            X = X @ turned(axis, Q[:, k] * gear + change.get(f"{name}.offset", np.zeros(1)))
-            k += 1
+        for name, X_ParentJoint, axis, up in self.chain:
+            X_ParentChild = X_ParentJoint @ of(name)
+            if axis is not None:
+                gear = 1 + change.get(f"{name}.gear", np.zeros(1))
+                X_ParentChild = X_ParentChild @ turned(axis, Q[:, k] * gear + change.get(f"{name}.offset", np.zeros(1)))
+                k += 1
+            X = X @ (np.linalg.inv(X_ParentChild) if up else X_ParentChild)
         return X @ of("tool")
 
     def seen(self, poses, change, tips=None):

@@ -22,6 +22,7 @@
 #include "posewright/tasks/calibrate_problem.hpp"
 #include "posewright/tasks/evaluate_problem.hpp"
 #include "posewright/tasks/next_poses.hpp"
+#include "posewright/tasks/place_stations.hpp"
 #include "posewright/tasks/route_problem.hpp"
 #include "posewright/tasks/simulate_problem.hpp"
 #include "tests/kit/example_problems.hpp"
@@ -591,6 +592,8 @@ TEST(InstrumentList, WhatIsForOneInstrumentRefusesAList) {
   const Planar seen(std::string(planar_problem) + "workspace: {line_of_sight: {range: [0.1, 5]}}\n");
   EXPECT_THAT(complaint_of([&] { plan_problem(seen.problem, {}, Monitor{}); }),
               HasSubstr(list + "workspace.line_of_sight"));
+  const Planar placed(std::string(planar_problem) + "workspace: {stations: {among: {B: [1, 0, 0]}}}\n");
+  EXPECT_THAT(complaint_of([&] { place_stations(placed.problem, {}, Monitor{}); }), HasSubstr(list + "stations"));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "posewright/cell/cell.hpp"
 #include "posewright/model/corrected_urdf.hpp"
+#include "posewright/model/whitening.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/file.hpp"
 #include "posewright/tasks/observe_problem.hpp"
@@ -62,33 +63,64 @@ TEST(TwoArms, HaveAsManyParametersAsAChainOfTheirJoints) {
   EXPECT_EQ(o.identifiability.rank, 4 * 12 + 6 + 9);
 }
 
-TEST(TwoArms, AreProposedWithoutAFloorWhichWouldMoveWithTheBase) {
-  InitFacts facts;
-  facts.robot = examples_folder() / "two_arms/two_arms.urdf";
-  facts.base = "left_hand";
-  facts.tip = "right_hand";
-  EXPECT_FALSE(floor_of(facts, look_at_robot(facts, "problem.yaml")));
-  facts.floor = 0.1;
-  EXPECT_EQ(floor_of(facts, look_at_robot(facts, "problem.yaml")), 0.1) << "somebody wants one";
-  facts.floor.reset();
-  facts.base = "torso";
-  const InitRobot robot = look_at_robot(facts, "problem.yaml");
-  EXPECT_TRUE(floor_of(facts, robot));
-  EXPECT_THAT(robot.links.other_tips, ElementsAre("right_wrist_link")) << "not those of the other arm";
+TEST(TwoArms, InformAlikeWhicheverHandIsTheBase) {
+  const Problem left = example(file);
+  Problem right = left;
+  auto& arm = std::get<SerialArmSpec>(right.robot);
+  std::swap(arm.base, arm.tip);
+  std::get<CameraMeasurement>(right.measurement.instrument).on_hand = true;
+  const auto one = make_model(left), other = make_model(right);
+  Random random(3, 0);
+  Linearisation scratch;
+  for (const MeasuredPose& pose : random_poses(*one, 100, random)) {
+    const auto information = [&](const IdentificationModel& model, const std::vector<double>& q,
+                                 std::vector<int>& selected, std::map<std::string, int>& columns) {
+      for (int i = 0; i < int(model.parameters().size()); ++i) {
+        const std::string& name = model.parameters()[std::size_t(i)].name;
+        if (name.starts_with("base.") || name.starts_with("tool.")) continue;
+        columns[name] = int(selected.size());
+        selected.push_back(i);
+      }
+      BlockArray::RowMatrix J(model.block_rows(selected), Eigen::Index(selected.size()));
+      EXPECT_TRUE(whitened_block(model, q, {}, selected, scratch, J.data(), int(selected.size())));
+      return Eigen::MatrixXd(J.transpose() * J);
+    };
+    std::vector<double> q;
+    for (const Coordinate& c : other->coordinates())
+      for (std::size_t i = 0; i < pose.q.size(); ++i)
+        if (one->coordinates()[i].name == c.name) q.push_back(pose.q[i]);
+    std::vector<int> selected, reversed;
+    std::map<std::string, int> columns, same;
+    const Eigen::MatrixXd M = information(*one, pose.q, selected, columns);
+    const Eigen::MatrixXd N = information(*other, q, reversed, same);
+    ASSERT_EQ(columns.size(), same.size());
+    for (const auto& [a, i] : columns)
+      for (const auto& [b, j] : columns)
+        ASSERT_NEAR(M(i, j), N(same.at(a), same.at(b)), 1e-9 * std::sqrt(M(i, i) * M(j, j))) << a << " " << b;
+  }
 }
 
-TEST(TwoArms, RefuseObstaclesThatWouldMoveWithTheBase) {
+TEST(TwoArms, AreProposedOnAFloorOfTheirRootIfTheirBaseMoves) {
   const TemporaryFolder folder;
-  std::string text = read_file(examples_folder() / file);
-  const std::string urdf = (examples_folder() / "two_arms/two_arms.urdf").string(), clearance = "clearance: \"10 mm\"";
-  text.replace(text.find("two_arms.urdf"), 13, urdf);
-  text.replace(text.find(clearance), clearance.size(), clearance + ", obstacles: [{name: floor, plane: [0, 0, 1]}]");
-  try {
-    make_cell(read_problem(folder.write("p.yaml", text)));
-    ADD_FAILURE();
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("p.yaml:27: obstacles need a base that stands"));
-  }
+  std::string urdf = read_file(examples_folder() / "two_arms/two_arms.urdf");
+  // The stand from 0.51 m below its frame to 1 cm below the torso.
+  const std::string before = R"(<origin xyz="0 0 0.3"/><geometry><cylinder radius="0.12" length="0.6"/>)";
+  const std::string after = R"(<origin xyz="0 0 0.05"/><geometry><cylinder radius="0.12" length="1.12"/>)";
+  for (std::size_t at; (at = urdf.find(before)) != std::string::npos;) urdf.replace(at, before.size(), after);
+  const std::filesystem::path file = folder.write("robot.urdf", urdf);
+  const auto floor = [&](const char* base) {
+    InitFacts facts;
+    facts.robot = file;
+    facts.base = base;
+    facts.tip = "right_hand";
+    InitRobot robot = look_at_robot(facts, "problem.yaml");
+    facts.no_floor = true;
+    add_bodies(robot, parse_problem(init_text(facts, robot, {.position = {100, 0, 100}}), "problem.yaml", {}));
+    facts.no_floor = false;
+    return floor_of(facts, robot).value();
+  };
+  EXPECT_NEAR(floor("left_hand"), -0.51, 1.5e-3);
+  EXPECT_NEAR(floor("torso"), -1.13, 1.5e-3);
 }
 
 }  // namespace

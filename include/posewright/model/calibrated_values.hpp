@@ -33,7 +33,9 @@ struct FrameCorrection {
 };
 
 /// A calibrated serial arm written as corrections of the frames of its nominal chain. With them its tip is at
-///   X_MeasureBase · base · Π_k [X_ParentJoint,k · joints_k · Motion_k(multiplier q + mimic offset)] · X_LastTip · tip.
+///   X_MeasureBase · base · Π_k [X_ParentJoint,k · joints_k · Motion_k(multiplier q + mimic offset)] · X_LastTip · tip,
+/// with the factor X_ParentJoint,k · Motion_k · joints_k⁻¹ of a joint that is passed backward: in the URDF, joints_k
+/// stands behind the origin of any joint.
 struct ChainCorrection {
   FrameCorrection base, tip;
   std::vector<FrameCorrection> joints;    ///< as many as the chain has

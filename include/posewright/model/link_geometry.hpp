@@ -25,16 +25,23 @@ struct LinkGeometry {
   std::string follower{};  ///< joint beside the chain that moves the link with one of the chain's joints; empty: none
 };
 
-/// All links with a <collision> shape, also those beside the way from base to tip, which hang at zero position
-/// (those of a follower move in truth: `follower` names it).
+/// All links with a <collision> shape, also those beside the way from base to tip, which hang where their
+/// joints are held, else at zero position (those of a follower move in truth: `follower` names it).
 /// Throws InputError as read_urdf_chain, and for shapes whose numbers are malformed.
 std::vector<LinkGeometry> read_urdf_links(const SerialArmSpec& arm, const SourcePlace& place);
 
 /// All links with a <visual> shape, as read_urdf_links; with their shapes in `shapes`.
 std::vector<LinkGeometry> read_urdf_visuals(const SerialArmSpec& arm, const SourcePlace& place);
 
-/// True if joints on the way from base to tip move the base in the robot's own root.
-bool base_moves(const SerialArmSpec& arm, const SourcePlace& place);
+/// The frame of the chain that carries the URDF's root link, as LinkGeometry::frame, and where the root is in it.
+struct RootPlace {
+  int frame = 0;
+  Eigen::Isometry3d X_FrameRoot = Eigen::Isometry3d::Identity();
+
+  /// Joints on the way from base to tip move the base in the root, which stands.
+  bool base_moves() const { return frame > 0; }
+};
+RootPlace root_place(const SerialArmSpec& arm, const SourcePlace& place);
 
 /// Variant for a file of surroundings, all joints at zero position, in the frame of its
 /// root.

@@ -9,6 +9,7 @@ namespace posewright {
 /// NAME.offset and NAME.gear (not for mimic joints); tool.{x,…,rz}. Pose of the tip in the measurement frame:
 ///   X_MeasureBase D(base) · Π_k [X_ParentJoint,k D_k Motion_k(multiplier ((1 + gear) q + offset) + mimic offset)] ·
 ///   X_LastTip D(tool).
+/// A joint that is passed backward has the factor X_ParentJoint,k Motion_k D_k⁻¹.
 /// More than can be identified on purpose: the irreducible subset comes out of the identifiability analysis.
 class SerialChain : public TipModel {
  public:
@@ -50,6 +51,9 @@ class SerialChain : public TipModel {
     int joint;  ///< −1 base, joints() tool
     int kind;   ///< 0–2 translation, 3–5 rotation, 6 offset, 7 gear
   };
+
+  /// Of −1 for the base and joints() for the tool: false.
+  bool is_backward(int joint) const;
 
   ChainDescription chain_;
   ChainLayout layout_;

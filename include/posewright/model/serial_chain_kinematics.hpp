@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,8 +19,13 @@ struct ChainJoint {
   int coordinate = 0;                               ///< index into the configuration
   double multiplier = 1.0, offset = 0.0;            ///< of a mimic joint
   bool mimic = false;
+  /// Origin in the URDF, behind the moving joint above it, of a joint that the chain passes backward, from child to
+  /// parent. Its displacement, which has the sense of the URDF, then stands inverse behind the motion.
+  std::optional<Eigen::Isometry3d> X_AboveJoint{};
   double mass = 0.0;  ///< kg, of all links that this joint carries up to the next one
   Eigen::Vector3d centre_of_mass = Eigen::Vector3d::Zero();  ///< m, frame of the moved joint
+
+  bool backward() const { return X_AboveJoint.has_value(); }
 };
 
 /// Moving joints of the longest chain that is accepted.
@@ -80,6 +86,13 @@ struct Frame {
     then_rotate(Eigen::Vector3d::UnitZ(), d[5]);
     then_rotate(Eigen::Vector3d::UnitY(), d[4]);
     then_rotate(Eigen::Vector3d::UnitX(), d[3]);
+  }
+  /// D⁻¹ of the same.
+  void then_take_back(const T* d) {
+    Frame displacement;
+    displacement.then_displace(d);
+    R = (R * displacement.R.transpose()).eval();
+    p -= R * displacement.p;
   }
 };
 

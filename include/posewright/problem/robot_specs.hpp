@@ -91,6 +91,7 @@ struct SerialArmSpec {
   std::optional<Located<std::string>> group;                        ///< of the SRDF, whose chain gives base and tip
   std::vector<std::pair<Located<std::string>, std::string>> xacro;  ///< arguments, where `urdf` is a xacro file
   std::shared_ptr<const std::string> expanded;                      ///< its expansion by xacro; null: `urdf` is URDF
+  std::vector<std::pair<Located<std::string>, Measured>> hold;      ///< joints by name or glob; m or rad, of all poses
   Placement placement;         ///< nominal pose of the base in the measurement frame (key `placement`)
   double encoder_noise = 0.0;  ///< 1σ of every joint reading (rad or m), 0 = exact
   /// User's name of a parameter → the model's name, e.g. px1 → joint_a2.x.

@@ -101,7 +101,9 @@ std::vector<Stand> stands_before_hand(const InitFacts& facts, const InitRobot& r
 }
 
 /// Possible stands, best first. The board of a camera on the hand lies face up; a fixed camera looks back at the robot.
+/// One on a base that moves, a head, has the frame of the base, as cameras in URDFs have.
 std::vector<Stand> stands(const InitFacts& facts, const InitRobot& robot) {
+  if (on_moving_base(facts, robot)) return {{facts.place.value_or(Eigen::Vector3d::Zero()), Eigen::Vector3d::UnitZ()}};
   std::vector<Stand> result;
   for (const Eigen::Vector3d& place : places(facts, robot)) {
     const Eigen::Vector3d back(-place.x(), -place.y(), 0);

@@ -144,7 +144,7 @@ InitRobot look_at_robot(const InitFacts& facts, const fs::path& file) {
   arm.base = Located<std::string>{robot.links.base, 0};
   arm.tip = Located<std::string>{robot.links.tip, 0};
   robot.chain = read_urdf_chain(arm, {facts.robot.string(), 0});
-  robot.base_moves = base_moves(arm, {facts.robot.string(), 0});
+  robot.root = root_place(arm, {facts.robot.string(), 0});
   robot.reach = reach_of(robot.chain);
   if (!(robot.reach > robot_smallest && robot.reach < robot_largest))
     throw InputError({facts.robot.string(), 0}, fmt::format("is a robot that reaches {:g} m", robot.reach),
@@ -173,6 +173,10 @@ void add_bodies(InitRobot& robot, const Problem& problem) {
     if (c.choice()) here.back() = 0.0;
   }
   const DrawnPose a = drawing.at(here), b = drawing.at(there);
+  const auto in_cell = [&](const DrawnPose& pose, const Eigen::Isometry3d& X) -> Eigen::Isometry3d {
+    if (!robot.root.base_moves()) return X;
+    return (pose.frames[std::size_t(robot.root.frame)] * robot.root.X_FrameRoot).inverse() * X;
+  };
   std::vector<Eigen::AlignedBox3d> still;
   const DrawnBody* largest = nullptr;
   double face = 0.0;
@@ -181,13 +185,16 @@ void add_bodies(InitRobot& robot, const Problem& problem) {
     const Eigen::Isometry3d &Xa = a.frames[std::size_t(body.frame)], &Xb = b.frames[std::size_t(body.frame)];
     const Eigen::Isometry3d X_TipFrame = a.tip.inverse() * Xa;
     if (body.frame > 0 && (largest == nullptr || size_of(body) > size_of(*largest))) largest = &body;
-    if (Xa.isApprox(Xb, 1e-9)) still.push_back(box_around(body, Xa * body.X_FrameBody));
+    if (const Eigen::Isometry3d X = in_cell(a, Xa); X.isApprox(in_cell(b, Xb), 1e-9))
+      still.push_back(box_around(body, X * body.X_FrameBody));
     else if (X_TipFrame.isApprox(b.tip.inverse() * Xb, 1e-9))
       face = std::max(face, extent_at(body, X_TipFrame * body.X_FrameBody, robot.outward));
   }
   require_size(largest, robot, std::get<SerialArmSpec>(problem.robot));
   robot.face = face;
-  robot.lowest = foot_of(std::move(still), robot.chain.joints.front().X_ParentJoint.translation());
+  const Eigen::Isometry3d& X_First =
+      robot.root.base_moves() ? a.frames[std::size_t(robot.root.frame)] : robot.chain.joints.front().X_ParentJoint;
+  robot.lowest = foot_of(std::move(still), in_cell(a, X_First).translation());
 }
 
 }  // namespace posewright

@@ -131,13 +131,14 @@ std::string camera_text(const InitFacts& facts, const InitRobot& robot, const In
       "deg. "
       "The camera's own calibration knows focal length, centre and distortion better.\nmeasurement:\n  type: camera\n",
       facts.lens.name, board.rows, board.columns,
-      facts.on_hand ? "The camera is on the hand, the board stands in the cell."
-                    : "The camera stands in the cell, the board is on the hand.",
+      facts.on_hand                  ? "The camera is on the hand, the board stands in the cell."
+      : on_moving_base(facts, robot) ? "The camera rides on the base, the board is on the hand."
+                                     : "The camera stands in the cell, the board is on the hand.",
       facts.lens.source, facts.lens.horizontal_view() * in_degrees, facts.lens.vertical_view() * in_degrees);
   // Camera and board face each other: the frame of the mounted one is seen from the tip, that of the other from the
   // base.
   const Eigen::Matrix3d mounted = rotation_of_rpy(turn_z_to(facts.on_hand ? robot.outward : -robot.outward));
-  const Eigen::Matrix3d standing = frame_along(place.view);
+  const Eigen::Matrix3d standing = on_moving_base(facts, robot) ? Eigen::Matrix3d::Identity() : frame_along(place.view);
   const Eigen::Vector3d mount = mounted_at(facts, robot);
   const Eigen::Vector3d camera_at = facts.on_hand ? mount : place.position;
   const Eigen::Vector3d board_at = facts.on_hand ? place.position - standing * middle : mount - mounted * middle;
@@ -326,8 +327,7 @@ std::pair<double, double> sight_range(const InitFacts& facts) {
 }
 
 std::optional<double> floor_of(const InitFacts& facts, const InitRobot& robot) {
-  // A floor would move with such a base.
-  if (facts.no_floor || (robot.base_moves && !facts.floor)) return std::nullopt;
+  if (facts.no_floor) return std::nullopt;
   // Rounded down: a plane that cuts the foot of the robot would forbid nothing less.
   return facts.floor ? facts.floor : std::floor(robot.lowest * 1e3) / 1e3;
 }

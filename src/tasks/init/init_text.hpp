@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "posewright/model/link_geometry.hpp"
 #include "posewright/model/propose_chain.hpp"
 #include "posewright/model/serial_chain_kinematics.hpp"
 #include "posewright/problem/problem.hpp"
@@ -20,12 +21,12 @@ namespace posewright {
 struct InitRobot {
   ProposedChain links;
   ChainDescription chain;
-  bool base_moves = false;                        ///< by joints on the way to the tip
-  double reach = 0.0;                             ///< m, no point of the tip is farther from the first joint
-  Eigen::Vector3d outward{0, 0, 1};               ///< tip frame, unit, along an axis: where a tool points
-  std::string urdf;                               ///< as the problem file names it
-  double lowest = 0.0;                            ///< m, of what the arm stands on, base frame; at most 0
-  double face = 0.0;                              ///< m, how far bodies reach beyond the tip along `outward`
+  RootPlace root;                    ///< in which the cell stands if joints of the way move the base
+  double reach = 0.0;                ///< m, no point of the tip is farther from the first joint
+  Eigen::Vector3d outward{0, 0, 1};  ///< tip frame, unit, along an axis: where a tool points
+  std::string urdf;                  ///< as the problem file names it
+  double lowest = 0.0;               ///< m, of what the arm stands on; base, or root if it moves; at most 0
+  double face = 0.0;                 ///< m, how far bodies reach beyond the tip along `outward`
   std::shared_ptr<const std::string> expanded{};  ///< by xacro; null: the file is a URDF
 };
 
@@ -64,6 +65,11 @@ struct InitPlace {
 std::string init_text(const InitFacts& facts, const InitRobot& robot, const InitPlace& place,
                       const std::filesystem::path& expanded = {});
 
+/// The camera is on a base that joints of the way move.
+inline bool on_moving_base(const InitFacts& facts, const InitRobot& robot) {
+  return facts.camera && !facts.on_hand && robot.root.base_moves();
+}
+
 /// Point of the tip's frame at which camera or board is mounted.
 Eigen::Vector3d mounted_at(const InitFacts& facts, const InitRobot& robot);
 
@@ -71,7 +77,8 @@ Eigen::Vector3d mounted_at(const InitFacts& facts, const InitRobot& robot);
 /// are some 12 px apart.
 std::pair<double, double> sight_range(const InitFacts& facts);
 
-/// Height of the floor, m in the base frame: what is said, else under the bodies that stand still; none: no floor.
+/// Height of the floor, m in the base frame, or in the root's if the base moves: what is said, else under the bodies
+/// that stand still; none: no floor.
 std::optional<double> floor_of(const InitFacts& facts, const InitRobot& robot);
 
 /// Poses that are asked for if nobody says how many.

@@ -30,6 +30,7 @@ import { documentOf } from './yaml_edit.js';
  * @property {() => string[]} [instrumentWords] options of init
  * @property {boolean} [planning]
  * @property {() => void} quickLook the error to expect, roughly
+ * @property {() => Promise<void>} showPlan the report of the plan that is there
  * @property {{text: string, bytes: Uint8Array, poses: Uint8Array}} [quick] its plan, its poses, and the problem they are for
  */
 
@@ -41,7 +42,12 @@ const live = {
   project,
   look: new Program(),
   work: new Program(),
-  result: resultFrame(project),
+  result: resultFrame(project, async (csv) => {
+    const list = joined(project.folder, 'moved.csv');
+    const files = new Map([...project.files, [list, new TextEncoder().encode(csv)]]);
+    const { code, out, err } = await live.look.run({ args: ['report', 'plan.json', '--problem', nameOf(project.problem), '--judge', 'moved.csv', '--json'], files, folder: project.folder });
+    return code === 0 ? JSON.parse(out) : { failed: messagesOf(err, '').map((m) => m.text).join(' ') || 'The program was stopped.' };
+  }),
   complain(text) {
     said.textContent = text;
     said.hidden = text === '';

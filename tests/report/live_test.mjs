@@ -290,6 +290,26 @@ async function complaintWith(context, spoil) {
   return said;
 }
 
+/** `init --show` of an installation that has the page. */
+async function checkShow(context) {
+  about('init --show');
+  const installed = join(out, 'installed');
+  for (const folder of ['bin', 'share/posewright']) mkdirSync(join(installed, folder), { recursive: true });
+  copyFileSync(resolve(values.program), join(installed, 'bin/posewright'));
+  copyFileSync(file, join(installed, 'share/posewright/posewright.html'));
+  copyFileSync(join(root, 'examples/kr270/kr270.urdf'), join(out, 'kr270.urdf'));
+  const words = ['init', 'kr270.urdf', '--tracker', '--yes', '--show', '--force', '-o', 'shown.yaml'];
+  const said = execFileSync(join(installed, 'bin/posewright'), words, { cwd: out, encoding: 'utf8', env: { PATH: process.env.PATH } });
+  check(said.includes(join(out, 'shown.html')), 'the path of the page is printed', said);
+  const page = await context.newPage();
+  page.setDefaultTimeout(240_000);
+  await page.goto(`file://${join(out, 'shown.html')}`);
+  await page.waitForFunction(() => document.querySelector('.live-view')?.dataset.drawn);
+  check((await text(page)) === readFileSync(join(out, 'shown.yaml'), 'utf8'), 'the page begins with the problem');
+  check((await page.locator('.editor-part .messages li.error').count()) === 0, 'and can read all its files');
+  await page.close();
+}
+
 async function checkWeakBrowsers(context) {
   about('browsers that cannot run the program');
   const old = await complaintWith(context, () => (WebAssembly.compile = () => Promise.reject(new Error('invalid SIMD opcode'))));
@@ -339,6 +359,7 @@ await page.waitForFunction(() => document.querySelector('.live-view')?.dataset.d
 check((await text(page)) === kept, 'the problem is there when the page is opened again');
 check(complaints.length === 0, 'no error, no warning, no request', complaints.join(' | '));
 await page.close();
+await checkShow(context);
 await checkWeakBrowsers(context);
 await browser.close();
 process.exitCode = verdict();

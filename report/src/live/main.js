@@ -6,6 +6,7 @@ import { messagesOf } from './messages.js';
 import { Program } from './program.js';
 import { Project, joined, nameOf } from './project.js';
 import { resultFrame } from './result_frame.js';
+import { placeMeshes, robotAmong } from './robot_files.js';
 import { cellStep } from './steps/cell.js';
 import { instrumentStep } from './steps/instrument.js';
 import { measuredStep } from './steps/measured.js';
@@ -111,5 +112,8 @@ for (const name of ['dragover', 'drop']) addEventListener(name, (event) => event
 const given = document.getElementById('given').textContent;
 if (given.startsWith('{')) {
   const { files, problem } = JSON.parse(given);
-  live.project.open(new Map(Object.entries(files).map(([path, text]) => [path, Uint8Array.from(atob(text), (c) => c.charCodeAt(0))])), problem);
+  const bytes = new Map(Object.entries(files).map(([path, text]) => [path, Uint8Array.from(atob(text), (c) => c.charCodeAt(0))]));
+  const robot = robotAmong(bytes);
+  if (robot) placeMeshes(bytes, robot);
+  live.project.open(bytes, problem);
 } else live.project.restore();

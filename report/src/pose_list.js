@@ -1,6 +1,4 @@
-import { Neighbours } from './numerics/neighbours.js';
 import { PlanFigures } from './numerics/plan_figures.js';
-import { armAt, nearby } from './view/kinematics.js';
 
 /**
  * The list the reader works on: which poses, where, in which order, which of them a new plan must keep, and what they
@@ -12,7 +10,6 @@ export class PoseList extends EventTarget {
     super();
     this.report = report;
     this.engine = new PlanFigures(report.columns, report.information);
-    this.neighbours = new Neighbours(report.neighbours, report.columns.length);
     /** Poses measured before count whatever the reader ticks. */
     this.measured = report.plan.poses.filter((p) => p.measured).map((p) => p.id);
     this.planned = this.engine.of(this.engine.blocks.keys());
@@ -21,6 +18,7 @@ export class PoseList extends EventTarget {
       poses: new Map(report.plan.poses.map((p) => [p.id, p])),
       keyframes: new Map(report.keyframes.filter((k) => k.pose).map((k) => [k.pose, k])),
       blocks: new Map(this.engine.blocks),
+      pictures: new Map((report.camera?.pictures ?? []).map((p) => [p.pose, p.pixels])),
     };
     this.unreachable = new Map((report.route?.unreachable ?? []).map((u) => [u.pose, u.reason]));
     this.#restore();
@@ -34,7 +32,9 @@ export class PoseList extends EventTarget {
     this.poses = new Map(this.#original.poses);
     this.keyframes = new Map(this.#original.keyframes);
     this.engine.blocks = new Map(this.#original.blocks);
-    /** @type {Map<number, number[]>} steps of each coordinate from where the plan has the pose */
+    /** @type {Map<number, any[]>} what a camera sees at each pose */
+    this.pictures = new Map(this.#original.pictures);
+    /** @type {Map<number, string|null>} of moved poses: why one is not feasible, null: it is */
     this.moves = new Map();
     /** @type {Set<number>} */
     this.locked = new Set(this.report.plan.poses.filter((p) => p.fixed).map((p) => p.id));
@@ -62,11 +62,6 @@ export class PoseList extends EventTarget {
   /** Ids of the ticked poses in order. */
   get ids() {
     return this.entries.filter((e) => e.on).map((e) => e.id);
-  }
-
-  /** Ticked poses that were moved to where nothing is known of their information: figures leave them out. */
-  get unknown() {
-    return this.ids.filter((id) => this.moves.has(id) && !this.known(id)?.told);
   }
 
   get figures() {
@@ -104,75 +99,31 @@ export class PoseList extends EventTarget {
     this.#changed();
   }
 
-  /** Steps of a pose from where the plan has it. @param {number} id @returns {number[]} */
-  steps(id) {
-    return this.moves.get(id) ?? (this.report.neighbours?.coordinates ?? []).map(() => 0);
-  }
-
-  /** Coordinates that the reader may move, with their steps. @param {number} id */
-  coordinates(id) {
-    return this.neighbours.coordinates(id, this.#original.poses.get(id).configuration);
-  }
-
-  /** What is known of a pose where it is now; null: nothing. @param {number} id */
-  known(id) {
-    return this.neighbours.place(id, this.steps(id));
-  }
-
-  /** Moves a pose, which locks it: nobody moves a pose that the next plan may drop.
-   * @param {number} id @param {number} coordinate @param {number} step from where the plan has it */
-  moveTo(id, coordinate, step) {
-    const k = this.steps(id).map((old, j) => (j === coordinate ? step : old));
-    if (k.every((v) => v === 0)) this.moves.delete(id);
-    else this.moves.set(id, k);
+  /**
+   * Puts a pose where the program has judged it, which locks it: nobody moves a pose that the next plan may drop.
+   * @param {number} id @param {import('./types.js').JudgedPose} judged
+   */
+  place(id, { reason, pose, keyframe, packed, pixels }) {
+    const { poses, keyframes } = this.#original;
+    const there = { contribution: undefined, efficiency_without: undefined, id, moved: true };
+    this.poses.set(id, { ...poses.get(id), nearest: undefined, ...pose, ...there });
+    if (keyframes.has(id)) this.keyframes.set(id, { ...keyframes.get(id), ...keyframe, pose: id, seconds: keyframes.get(id).seconds });
+    this.engine.blocks.set(id, packed);
+    this.pictures.set(id, pixels);
+    this.moves.set(id, reason);
     this.locked.add(id);
-    this.#place(id, k);
     this.#changed();
   }
 
   /** Back to where the plan has it. @param {number} id */
   putBack(id) {
+    const { poses, keyframes, blocks, pictures } = this.#original;
+    this.poses.set(id, poses.get(id));
+    if (keyframes.has(id)) this.keyframes.set(id, keyframes.get(id));
+    this.engine.blocks.set(id, blocks.get(id));
+    this.pictures.set(id, pictures.get(id));
     this.moves.delete(id);
-    this.#place(id, this.steps(id));
     this.#changed();
-  }
-
-  /** @param {number} id @param {number[]} k */
-  #place(id, k) {
-    const { poses, keyframes, blocks } = this.#original;
-    const [pose, keyframe, own] = [poses.get(id), keyframes.get(id), blocks.get(id)];
-    if (!this.moves.has(id)) {
-      this.poses.set(id, pose);
-      if (keyframe) this.keyframes.set(id, keyframe);
-      this.engine.blocks.set(id, own);
-      return;
-    }
-    const configuration = [...pose.configuration];
-    this.coordinates(id).forEach(({ index, step }, j) => {
-      if (k[j] !== 0) configuration[index] = pose.configuration[index] + k[j] * step;
-    });
-    const known = this.neighbours.place(id, k);
-    const drawn = keyframe && this.#drawn(id, keyframe, configuration, k);
-    this.poses.set(id, {
-      ...pose,
-      configuration,
-      moved: true,
-      actuators: undefined,
-      targets: undefined,
-      contribution: undefined,
-      efficiency_without: undefined,
-      tool_pose: drawn && this.report.chain ? { position: drawn.tip.slice(0, 3) } : undefined,
-      nearest: known?.nearest,
-    });
-    if (drawn) this.keyframes.set(id, { ...keyframe, ...drawn });
-    this.engine.blocks.set(id, known?.told ? this.neighbours.information(id, k, own) : new Float64Array(own.length));
-  }
-
-  #drawn(id, keyframe, configuration, k) {
-    if (this.report.chain) return armAt(this.report.chain, configuration);
-    const { reach, poses } = this.report.neighbours;
-    const full = poses.find((p) => p.id === id).drawn;
-    return nearby(keyframe, full, k.map((steps) => steps / reach));
   }
 
   /** @param {number|null} id */

@@ -31,33 +31,13 @@
  * @typedef {{poses: number, log_det: number|null, rho0: number|null, largest_sigma_ratio: number|null}} CurvePoint
  * @typedef {{sensitivity: number[], bound: number, positions: number[], chosen: number[]}} Candidates
  *
- * Near a pose: whole steps k of one or two coordinates (numerics/neighbours.js). `places` are the k that were looked at, a
- * pose's lists follow them; clearance in tenths of a millimetre; verdicts −1: feasible.
- * @typedef {object} Neighbourhood
- * @property {number} id
- * @property {number[]} steps rad or m, one a coordinate
- * @property {number[]} verdicts
- * @property {(0|1)[]} told whether the interpolated block stands for the model's
- * @property {number[]} clearance
- * @property {number[]} between
- * @property {number} rows
- * @property {[number[], number[], number[]]} scale by order and column
- * @property {string} terms base64 of 16-bit whole numbers, low byte first
- * @property {Keyframe[]} drawn at `reach` steps of each coordinate, of a robot without chain
- * @typedef {object} Neighbours
- * @property {number} reach
- * @property {{index: number, step: number, lower: number, upper: number}[]} coordinates
- * @property {number[][]} places
- * @property {string[]} reasons
- * @property {[string, string][]} bodies
- * @property {{efficiency: number, sigma: number, rho0: number}} errors largest that was found
- * @property {Neighbourhood[]} poses
- *
- * @typedef {object} Chain of a serial arm
- * @property {Placement} base
- * @property {{placement: Placement, axis: Point, prismatic: boolean, multiplier: number, offset: number, coordinate: number}[]} joints
- * @property {Placement} tip behind the last joint
- * @property {Point[]} targets in the tip's frame
+ * A pose where the program of the page around this one has judged it (posewright/judged-poses/1).
+ * @typedef {object} JudgedPose
+ * @property {string|null} reason that forbids it
+ * @property {any} pose as in plan.json
+ * @property {Keyframe} keyframe
+ * @property {number[]} packed JᵀJ, as Information.poses
+ * @property {([number, number]|null)[]|null} pixels as Camera.pictures
  *
  * @typedef {object} Camera
  * @property {boolean} on_tip the camera rides on the tip, the board does not; else the other way
@@ -89,10 +69,7 @@
  * @property {Information} information
  * @property {number[]} singular_values
  * @property {Candidates|null} candidates
- * @property {Chain|null} chain
  * @property {Camera|null} camera
- * @property {Neighbours|null} neighbours
- * @property {string} [why_no_neighbours]
  * @property {number[]} [position_errors] predicted at feasible configurations, m
  * @property {CurvePoint[]} curve
  * @property {(CurvePoint|null)[]} prefix after the first, second, … pose; null where not identifiable yet

@@ -111,15 +111,10 @@ class SmallestDistance {
     }
   }
 
-  std::optional<Separation> bodies() const {
-    if (nearest_ == nullptr) return std::nullopt;
-    return Separation{smallest_, second().name, first().name};
-  }
-
   std::optional<Separation> result() const {
-    std::optional<Separation> found = bodies();
-    if (found) found->points = nearest_points(*second().solid, X_b_, *first().solid, X_a_);
-    return found;
+    if (nearest_ == nullptr) return std::nullopt;
+    return Separation{smallest_, second().name, first().name,
+                      nearest_points(*second().solid, X_b_, *first().solid, X_a_)};
   }
 
  private:
@@ -211,12 +206,6 @@ std::optional<Separation> Collision::nearest(std::span<const double> q) const {
   SmallestDistance smallest(*scene_);
   for (int pose = 0; pose < scene_->frames->poses_per_configuration(); ++pose) smallest.look_at(q, pose);
   return smallest.result();
-}
-
-std::optional<Separation> Collision::nearest_bodies(std::span<const double> q) const {
-  SmallestDistance smallest(*scene_);
-  for (int pose = 0; pose < scene_->frames->poses_per_configuration(); ++pose) smallest.look_at(q, pose);
-  return smallest.bodies();
 }
 
 std::optional<Separation> Collision::nearest(std::span<const double> from, std::span<const double> to) const {

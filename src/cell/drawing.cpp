@@ -92,7 +92,6 @@ Drawing::Drawing(const Problem& problem, const Cell& cell) : model_(cell.model),
     robot_ = chain.robot;
     base_ = chain.X_MeasureBase.translation();
     for (const ChainJoint& joint : chain.joints) frame_names_.push_back(joint.name);
-    add_chain(chain);
     arm_ = make_body_frames(problem, *model_);
   } else {
     tip_ = make_tip({problem, find_variant(problem, "")});
@@ -132,25 +131,11 @@ void Drawing::keep_to_budget() {
     body.mesh = thinned(body.mesh, std::size_t(share * double(body.mesh.triangles.size())));
 }
 
-void Drawing::add_chain(const ChainDescription& chain) {
-  DrawnChain drawn{chain.X_MeasureBase, {}, chain.X_LastTip, {}};
-  for (const ChainJoint& joint : chain.joints) {
-    const std::string& name = chain.coordinates[std::size_t(joint.coordinate)].name;
-    const auto& all = model_->coordinates();
-    const auto at = std::find_if(all.begin(), all.end(), [&](const Coordinate& c) { return c.name == name; });
-    if (at == all.end()) return;
-    drawn.joints.push_back(
-        {joint.X_ParentJoint, joint.axis, joint.prismatic, joint.multiplier, joint.offset, int(at - all.begin())});
-  }
-  if (model_->tips() < 2) chain_ = std::move(drawn);
-}
-
 void Drawing::add_instrument(const MeasurementSpec& measurement, const Cell& cell) {
   for (const TargetSpec& target : view_of(measurement).targets) {
     target_names_.push_back(target.name);
     targets_.push_back(target.position);
   }
-  if (chain_) chain_->targets = targets_;
   if (const InstrumentView view = view_of(measurement); view.image && !view.places.empty()) {
     const auto placed = [&](const std::string& name, const Placement& placement) {
       return nominal_placement(model_->parameters(), name, isometry(placement));

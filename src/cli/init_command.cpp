@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "command.hpp"
+#include "live_page.hpp"
 #include "posewright/options/tables.hpp"
 #include "posewright/support/json.hpp"
 #include "posewright/support/table.hpp"
@@ -46,24 +47,14 @@ void print_cameras(bool json) {
   fmt::print("{}", table.text());
 }
 
-/// The schema of the installation that this program belongs to, else of its sources; empty if it is in neither.
-std::string schema_file() {
-  std::error_code code;
-  const fs::path program = fs::read_symlink("/proc/self/exe", code);
-  for (fs::path folder = program.parent_path(); folder.has_relative_path(); folder = folder.parent_path())
-    for (const char* place : {"share/posewright/schemas", "schemas"})
-      if (const fs::path file = folder / place / "problem.schema.json"; fs::is_regular_file(file, code))
-        return file.string();
-  return {};
-}
-
 InitCall given_call(const po::variables_map& values, const Words& positional) {
   InitCall call;
   if (values.count("samples") == 0) call.facts.robot = single(positional, "ROBOT");
   else if (!positional.empty()) throw InputError({}, "ROBOT and --samples", "one of them");
   call.facts.packages = packages_of(values);
   read_options(init_options(), values, call);
-  call.facts.schema = schema_file();
+  call.facts.schema =
+      installed_file({"share/posewright/schemas/problem.schema.json", "schemas/problem.schema.json"}).string();
   return call;
 }
 
@@ -121,6 +112,21 @@ void require_new(const fs::path& file, const std::string& text, bool force) {
 /// The file that the problem is made from.
 const fs::path& source_of(const InitFacts& facts) { return facts.samples.empty() ? facts.robot : facts.samples; }
 
+/// Files that the problem was made from, under the names that it has for them.
+std::vector<FileToWrite> files_for_page(const fs::path& source, const InitResult& result) {
+  std::vector<FileToWrite> files;
+  std::error_code code;
+  for (const fs::path& file : files_read())
+    files.push_back({fs::equivalent(file, source, code) ? source : file, read_file(file)});
+  if (!result.expanded.file.empty()) files.push_back(result.expanded);
+  return files;
+}
+
+void print_page(const fs::path& page, bool opened) {
+  if (opened) fmt::print("{} is opened in the browser.\n", page.string());
+  else fmt::print("No browser can be started here. Open this page in one: {}\n", fs::absolute(page).string());
+}
+
 void print_summary(const InitFacts& facts, const InitResult& result, const fs::path& file,
                    const po::variables_map& values) {
   if (!facts.samples.empty()) {
@@ -147,6 +153,9 @@ int run_init(const po::variables_map& values, const Words& positional) {
   const std::string output = values.count("output") > 0 ? text_of(values, "output") : "problem.yaml";
   if (output.empty()) throw InputError({}, "-o names no file", "a file, or - for stdout");
   const bool to_stdout = output == "-";
+  const bool show = values.count("show") > 0;
+  if (show && to_stdout) throw InputError({}, "--show and -o -", "--show needs a problem file: -o FILE");
+  if (show) require_live_page();
   if (to_stdout && common.json) throw InputError({}, "--json and -o - both need stdout", "give -o a file");
   if (!to_stdout) {
     require_new(output, "", values.count("force") > 0);
@@ -170,19 +179,31 @@ int run_init(const po::variables_map& values, const Words& positional) {
     check_outputs({output, result.expanded.file}, {facts.robot}, true);
     files.push_back(result.expanded);
   }
+  const fs::path page = show ? fs::path(output).replace_extension(".html") : fs::path();
+  if (show) {
+    files.push_back({page, page_with_problem({output, result.text}, files_for_page(source_of(facts), result))});
+    require_new(page, files.back().bytes, values.count("force") > 0);
+    check_outputs({output, page}, {source_of(facts)}, true);
+  }
   files.push_back({output, result.text});
   write_results(files);
-  if (common.json)
-    fmt::print("{}", json_text(nlohmann::ordered_json{
-                         {"schema", "posewright/init/1"},
-                         {"problem", output},
-                         {facts.samples.empty() ? "urdf" : "samples",
-                          result.expanded.file.empty() ? source_of(facts).string() : result.expanded.file.string()},
-                         {"base", result.base},
-                         {"tip", result.tip},
-                         {"joints", result.joints},
-                         {"notes", result.notes}}));
-  else print_summary(facts, result, output, values);
+  const bool opened = show && open_in_browser(page);
+  if (common.json) {
+    nlohmann::ordered_json json = {
+        {"schema", "posewright/init/1"},
+        {"problem", output},
+        {facts.samples.empty() ? "urdf" : "samples",
+         result.expanded.file.empty() ? source_of(facts).string() : result.expanded.file.string()},
+        {"base", result.base},
+        {"tip", result.tip},
+        {"joints", result.joints},
+        {"notes", result.notes}};
+    if (show) json["page"] = page.string();
+    fmt::print("{}", json_text(json));
+    return done;
+  }
+  print_summary(facts, result, output, values);
+  if (show) print_page(page, opened);
   return done;
 }
 

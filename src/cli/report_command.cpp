@@ -9,6 +9,7 @@
 #include "command.hpp"
 #include "posewright/options/tables.hpp"
 #include "posewright/report/draw_problem.hpp"
+#include "posewright/report/judge_poses.hpp"
 #include "posewright/report/report_problem.hpp"
 #include "posewright/report/report_result.hpp"
 #include "problem_source.hpp"
@@ -72,9 +73,18 @@ void refuse_options(const po::variables_map& values, std::initializer_list<const
       throw InputError({}, std::string("--") + name + " does not go with " + shown, "it goes with one PLAN");
 }
 
+int judge_list(const po::variables_map& values, const CommonOptions& common, const std::filesystem::path& file) {
+  refuse_options(values, {"output", "route", "brief", "watch", "time-limit"}, "--judge");
+  const Problem problem = problem_for_plan(problem_file(values, file), values, file);
+  const auto [judged, was_interrupted] = watched(
+      common, 0, [&](const Monitor& monitor) { return judge_poses(problem, file, text_of(values, "judge"), monitor); });
+  fmt::print("{}", common.json ? report_json(judged) : judged_text(judged));
+  return was_interrupted ? interrupted : done;
+}
+
 int report_cell(const po::variables_map& values, const CommonOptions& common, const std::filesystem::path& page,
                 const std::filesystem::path& file) {
-  refuse_options(values, {"route", "problem", "watch"}, "a problem file");
+  refuse_options(values, {"route", "problem", "judge", "watch"}, "a problem file");
   const Problem problem = given_problem(file, values);
   check_output_files(values, {page}, files_of(problem));
   DrawOptions options;
@@ -90,7 +100,7 @@ int report_cell(const po::variables_map& values, const CommonOptions& common, co
 
 int report_plans(const po::variables_map& values, const CommonOptions& common, const std::filesystem::path& page,
                  const Words& files) {
-  refuse_options(values, {"route", "brief", "time-limit", "watch"}, "two plans");
+  refuse_options(values, {"route", "brief", "time-limit", "judge", "watch"}, "two plans");
   std::vector<std::filesystem::path> inputs;
   std::vector<GivenPlan> plans;
   TwoPlansReport report;
@@ -102,7 +112,7 @@ int report_plans(const po::variables_map& values, const CommonOptions& common, c
   }
   check_output_files(values, {page}, inputs);
   ReportOptions options;
-  options.sizes = options.candidates = options.moves = false;
+  options.sizes = options.candidates = false;
   options.threads = common.threads;
   report.plans = watched(common, 0, [&](const Monitor& monitor) {
                    return std::array<Report, 2>{report_problem(plans[0].problem, plans[0].file, options, monitor),
@@ -166,9 +176,9 @@ int run_report(const po::variables_map& values, const Words& positional) {
   const bool watch = values.count("watch") > 0;
   if (is_plan(file)) {
     if (watch) throw InputError({}, "--watch does not go with a plan", "it goes with one RESULT");
-    return report_plan(values, common, page, file);
+    return values.count("judge") > 0 ? judge_list(values, common, file) : report_plan(values, common, page, file);
   }
-  refuse_options(values, {"route", "problem", "brief", "time-limit", "package", "parameters"}, "a result");
+  refuse_options(values, {"route", "problem", "brief", "time-limit", "judge", "package", "parameters"}, "a result");
   check_output_files(values, {page}, {file});
   if (watch) {
     if (page.empty() || common.json) throw InputError({}, "--watch writes a page", "-o FILE without --json");

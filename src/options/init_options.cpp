@@ -97,6 +97,7 @@ const OptionTable<InitCall>& init_options() {
     });
     t.of_program("output,o", "FILE", "problem file (problem.yaml; - for stdout)");
     t.of_program("force", "", "replace an existing file");
+    t.of_program("show", "", "open the page that plans with the problem in it (FILE.html beside the problem file)");
     t.of_program("yes", "", "ask no questions, even on a terminal");
     return t;
   }();

@@ -255,10 +255,10 @@ const OptionTable<ReportOptions>& report_options() {
            OptionKind::file);
     t.of_program("problem", "FILE", "problem file (the one named by the plan)");
     t.row({"brief", "",
-           "leave out the slow parts: other numbers of poses, gain of candidates, moved poses; of a problem: ways from "
-           "home",
+           "leave out the slow parts: other numbers of poses, gain of candidates; of a problem: ways from home",
            OptionKind::flag},
-          [](R& o, const GivenOption&) { o.sizes = o.candidates = o.moves = false; });
+          [](R& o, const GivenOption&) { o.sizes = o.candidates = false; });
+    t.of_program("judge", "POSES", "plan: print whether each pose of this list is feasible; writes no page");
     t.of_program("watch", "", "result: rewrite the page whenever the file changes; the open page reloads");
     t.of_program("force", "", replaces);
     t.of_program("time-limit", "S", "stop after S seconds with the parts that are finished");

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 
 #include "../results/sight_json.hpp"
+#include "posewright/report/judge_poses.hpp"
 #include "posewright/report/report.hpp"
 #include "posewright/support/json.hpp"
 #include "posewright/version.hpp"
@@ -102,31 +102,10 @@ Json candidates_json(const ReportCandidates& candidates) {
   return {{"sensitivity", sensitivity}, {"bound", 1.0}, {"positions", positions}, {"chosen", candidates.chosen}};
 }
 
-Json numbers_json(const Eigen::VectorXd& values) {
+Json pixels_json(const std::vector<Eigen::Vector2d>& pixels) {
   Json json = Json::array();
-  for (const double value : values) json.push_back(value);
-  return json;
-}
-
-Json exact_placement(const Eigen::Isometry3d& X) {
-  const Eigen::Quaterniond q(X.linear());
-  Eigen::VectorXd values(7);
-  values << X.translation(), q.coeffs();
-  return numbers_json(values);
-}
-
-Json chain_json(const ReportChain& chain) {
-  Json json = {{"base", exact_placement(chain.X_MeasureBase)}, {"tip", exact_placement(chain.X_LastTip)}};
-  json["joints"] = Json::array();
-  for (const ReportChain::Joint& joint : chain.joints)
-    json["joints"].push_back({{"placement", exact_placement(joint.X_ParentJoint)},
-                              {"axis", numbers_json(joint.axis)},
-                              {"prismatic", joint.prismatic},
-                              {"multiplier", joint.multiplier},
-                              {"offset", joint.offset},
-                              {"coordinate", joint.coordinate}});
-  json["targets"] = Json::array();
-  for (const Eigen::Vector3d& target : chain.targets) json["targets"].push_back(numbers_json(target));
+  for (const Eigen::Vector2d& p : pixels)
+    json.push_back(p.allFinite() ? Json({drawn(p.x()), drawn(p.y())}) : Json(nullptr));
   return json;
 }
 
@@ -144,56 +123,8 @@ Json camera_json(const ReportCamera& camera) {
     json["names"].push_back(name);
     json["points"].push_back(point_json(position));
   }
-  for (const auto& [id, pixels] : camera.pictures) {
-    Json list = Json::array();
-    for (const Eigen::Vector2d& p : pixels)
-      list.push_back(p.allFinite() ? Json({drawn(p.x()), drawn(p.y())}) : Json(nullptr));
-    json["pictures"].push_back({{"pose", id}, {"pixels", list}});
-  }
-  return json;
-}
-
-/// Two bytes a number, the lower one first, as base64 (RFC 4648).
-std::string base64(const std::vector<std::int16_t>& numbers) {
-  constexpr char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string bytes, text;
-  for (const std::int16_t number : numbers) {
-    bytes.push_back(char(std::uint16_t(number) & 0xff));
-    bytes.push_back(char(std::uint16_t(number) >> 8));
-  }
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t word = 0;
-    for (std::size_t k = 0; k < 3; ++k) word = word << 8 | (k < count ? std::uint8_t(bytes[i + k]) : 0U);
-    for (std::size_t k = 0; k < 4; ++k) text += k <= count ? letters[word >> (18 - 6 * k) & 63] : '=';
-  }
-  return text;
-}
-
-Json neighbours_json(const ReportNeighbours& n) {
-  constexpr double clearance_step = 1e4;  // a tenth of a millimetre
-  Json json = {{"reach", n.reach},
-               {"coordinates", Json::array()},
-               {"places", n.places},
-               {"reasons", n.reasons},
-               {"bodies", n.bodies},
-               {"errors", {{"efficiency", n.efficiency_error}, {"sigma", n.sigma_error}, {"rho0", n.accuracy_error}}},
-               {"poses", Json::array()}};
-  for (const ReportNeighbours::Coordinate& c : n.coordinates)
-    json["coordinates"].push_back({{"index", c.index}, {"step", c.step}, {"lower", c.lower}, {"upper", c.upper}});
-  for (const ReportNeighbours::Pose& pose : n.poses) {
-    Json one = {{"id", pose.id}, {"steps", pose.steps}, {"verdicts", pose.verdicts}, {"told", Json::array()}};
-    for (const bool told : pose.told) one["told"].push_back(told ? 1 : 0);
-    one["clearance"] = Json::array();
-    for (const double distance : pose.clearance) one["clearance"].push_back(std::lround(distance * clearance_step));
-    one["between"] = pose.between;
-    one["rows"] = pose.rows;
-    one["scale"] = pose.scale;
-    one["terms"] = base64(pose.terms);
-    one["drawn"] = Json::array();
-    for (const ReportKeyframe& keyframe : pose.drawn) one["drawn"].push_back(keyframe_json(keyframe));
-    json["poses"].push_back(std::move(one));
-  }
+  for (const auto& [id, pixels] : camera.pictures)
+    json["pictures"].push_back({{"pose", id}, {"pixels", pixels_json(pixels)}});
   return json;
 }
 
@@ -220,7 +151,6 @@ void add_scene(Json& json, const Report& report) {
   json["targets"] = report.targets;
   json["keyframes"] = Json::array();
   for (const ReportKeyframe& keyframe : report.keyframes) json["keyframes"].push_back(keyframe_json(keyframe));
-  json["chain"] = report.chain ? chain_json(*report.chain) : Json(nullptr);
   json["camera"] = report.camera ? camera_json(*report.camera) : Json(nullptr);
 }
 
@@ -239,8 +169,6 @@ Json plan_report(const Report& report) {
   json["singular_values"] = Json::array();
   for (const double s : report.information.singular_values) json["singular_values"].push_back(s);
   json["candidates"] = report.candidates ? candidates_json(*report.candidates) : Json(nullptr);
-  json["neighbours"] = report.neighbours ? neighbours_json(*report.neighbours) : Json(nullptr);
-  if (!report.neighbours) json["why_no_neighbours"] = report.why_no_neighbours;
   json["position_errors"] = report.position_errors;
   json["curve"] = Json::array();
   for (const CurvePoint& point : report.curve) json["curve"].push_back(curve_point_json(point));
@@ -284,6 +212,22 @@ std::string report_json(const TwoPlansReport& report) {
                {"title", report.title},
                {"files", report.files},
                {"plans", {plan_report(report.plans[0]), plan_report(report.plans[1])}}};
+  return json_text(json, JsonLayout::one_line) + "\n";
+}
+
+std::string report_json(const JudgedPoses& judged) {
+  Json json = {{"schema", "posewright/judged-poses/1"},
+               {"version", version},
+               {"ranges", Json::array()},
+               {"poses", Json::array()}};
+  for (const JudgedPoses::Range& range : judged.ranges)
+    json["ranges"].push_back({{"index", range.index}, {"lower", range.lower}, {"upper", range.upper}});
+  for (const JudgedPose& one : judged.poses)
+    json["poses"].push_back({{"reason", one.reason.empty() ? Json(nullptr) : Json(one.reason)},
+                             {"pose", planned_pose_json(one.pose)},
+                             {"keyframe", keyframe_json(one.drawn)},
+                             {"packed", packed(one.information)},
+                             {"pixels", one.pixels.empty() ? Json(nullptr) : pixels_json(one.pixels)}});
   return json_text(json, JsonLayout::one_line) + "\n";
 }
 

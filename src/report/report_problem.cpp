@@ -22,7 +22,6 @@
 #include "posewright/support/json.hpp"
 #include "posewright/support/parallel.hpp"
 #include "posewright/support/text_file.hpp"
-#include "report_neighbours.hpp"
 #include "report_scene.hpp"
 
 namespace posewright {
@@ -141,7 +140,6 @@ class ReportBuilder {
     for (const Coordinate& c : study_.first().model->actuators()) report_.actuators.emplace_back(c.name, c.unit);
     fill_prefix();
     fill_position_errors(judgement);
-    fill_moves(drawing, poses);
     if (options_.candidates || options_.sizes) find_gains();
     if (options_.candidates) fill_candidates();
     if (options_.sizes) fill_curve();
@@ -242,24 +240,9 @@ class ReportBuilder {
   /// Predicted pixels of the board's points.
   void fill_pictures() {
     if (!report_.camera) return;
-    Eigen::VectorXd pixels;
-    for (std::size_t i = 0; i < list_.ids.size(); ++i) {
-      if (!study_.first().model->predict(list_.configurations[i], {}, pixels)) continue;
-      std::vector<Eigen::Vector2d> points;
-      for (Eigen::Index k = 0; k + 1 < pixels.size(); k += 2) points.emplace_back(pixels[k], pixels[k + 1]);
-      report_.camera->pictures.emplace_back(list_.ids[i], std::move(points));
-    }
-  }
-
-  void fill_moves(const Drawing& drawing, const std::vector<std::pair<int, std::vector<double>>>& poses) {
-    if (!options_.moves) {
-      report_.why_no_neighbours = "--brief left it out";
-      return;
-    }
-    std::vector<std::pair<int, std::vector<double>>> open;
-    for (std::size_t i = 0; i < poses.size(); ++i)
-      if (!list_.measured[i]) open.push_back(poses[i]);
-    fill_neighbours(report_, study_, drawing, open, options_.threads, monitor_);
+    for (std::size_t i = 0; i < list_.ids.size(); ++i)
+      if (auto pixels = predicted_pixels(*study_.first().model, list_.configurations[i]); !pixels.empty())
+        report_.camera->pictures.emplace_back(list_.ids[i], std::move(pixels));
   }
 
   /// The candidates and what the plan has beside them.

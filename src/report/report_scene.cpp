@@ -153,18 +153,6 @@ class MotionRecorder {
   double seconds_ = 0.0, coarse_ = 1.0;
 };
 
-/// Coordinates as they are written of a pose: without choices.
-void fill_chain(Report& report, const DrawnChain& chain, const std::vector<Coordinate>& coordinates) {
-  ReportChain written{chain.X_MeasureBase, {}, chain.X_LastTip, chain.targets};
-  for (const DrawnChain::Joint& joint : chain.joints) {
-    const auto before = coordinates.begin() + joint.coordinate;
-    const auto choices = std::count_if(coordinates.begin(), before, [](const Coordinate& c) { return c.choice(); });
-    written.joints.push_back({joint.X_ParentJoint, joint.axis, joint.prismatic, joint.multiplier, joint.offset,
-                              joint.coordinate - int(choices)});
-  }
-  report.chain = std::move(written);
-}
-
 void fill_camera(Report& report, const DrawnCamera& camera) {
   report.camera = ReportCamera{camera.on_tip,       camera.X_CarrierCamera, camera.X_CarrierBoard, camera.image.width,
                                camera.image.height, camera.image.corners,   camera.points,         {}};
@@ -175,6 +163,14 @@ void fill_camera(Report& report, const DrawnCamera& camera) {
 ReportKeyframe keyframe_at(const Drawing& drawing, std::span<const double> q) {
   DrawnPose drawn = drawing.at(q);
   return {std::nullopt, 0.0, std::move(drawn.frames), std::move(drawn.lines), drawn.tip, std::move(drawn.targets)};
+}
+
+std::vector<Eigen::Vector2d> predicted_pixels(const IdentificationModel& model, std::span<const double> q) {
+  Eigen::VectorXd pixels;
+  std::vector<Eigen::Vector2d> points;
+  if (!model.predict(q, {}, pixels)) return points;
+  for (Eigen::Index k = 0; k + 1 < pixels.size(); k += 2) points.emplace_back(pixels[k], pixels[k + 1]);
+  return points;
 }
 
 void fill_scene(Report& report, const Drawing& drawing, const std::vector<std::pair<int, std::vector<double>>>& poses,
@@ -189,7 +185,6 @@ void fill_scene(Report& report, const Drawing& drawing, const std::vector<std::p
     std::visit(Fill{body, drawn.mesh}, drawn.shape);
     report.bodies.push_back(std::move(body));
   }
-  if (drawing.chain()) fill_chain(report, *drawing.chain(), coordinates);
   if (drawing.camera()) fill_camera(report, *drawing.camera());
   MotionRecorder film(report, drawing, coordinates);
   if (report.route_json.empty()) {

@@ -20,4 +20,7 @@ void fill_scene(Report& report, const Drawing& drawing, const std::vector<std::p
 /// Drawing of one configuration.
 ReportKeyframe keyframe_at(const Drawing& drawing, std::span<const double> q);
 
+/// u and v (px) of every point of a camera's board; empty where they cannot be predicted.
+std::vector<Eigen::Vector2d> predicted_pixels(const IdentificationModel& model, std::span<const double> q);
+
 }  // namespace posewright

@@ -149,28 +149,7 @@ nlohmann::ordered_json problem_json(const ProblemOrigin& problem) {
   return json;
 }
 
-nlohmann::ordered_json curve_point_json(const CurvePoint& point) {
-  return {{"poses", point.poses},
-          {"log_det", point.log_det},
-          {"rho0", point.rho0 ? Json(*point.rho0) : Json(nullptr)},
-          {"largest_sigma_ratio", point.worst_sigma ? Json(*point.worst_sigma) : Json(nullptr)}};
-}
-
-namespace {
-
-Json cell_json(const CellNotes& cell) {
-  Json margins = Json::object();
-  for (const NamedValue& v : cell.joint_margins) margins[v.name] = v.value;
-  Json reduced = Json::array();
-  for (const BodyDistance& pair : cell.reduced)
-    reduced.push_back({{"between", {pair.first, pair.second}}, {"clearance", pair.distance}});
-  return {{"always_touching", cell.always_touching},
-          {"reduced_clearances", reduced},
-          {"uncalibrated_margin", cell.margin},
-          {"uncalibrated_joint_margins", margins}};
-}
-
-Json pose_json(const PlannedPose& pose) {
+nlohmann::ordered_json planned_pose_json(const PlannedPose& pose) {
   Json json = {{"id", pose.id}, {"candidate", pose.candidate ? Json(*pose.candidate) : Json(nullptr)}};
   if (pose.listed)
     json["listed"] = {{"id", pose.listed->id},
@@ -199,6 +178,27 @@ Json pose_json(const PlannedPose& pose) {
   json["contribution"] = pose.contribution;
   if (!pose.measured) json["efficiency_without"] = pose.without;
   return json;
+}
+
+nlohmann::ordered_json curve_point_json(const CurvePoint& point) {
+  return {{"poses", point.poses},
+          {"log_det", point.log_det},
+          {"rho0", point.rho0 ? Json(*point.rho0) : Json(nullptr)},
+          {"largest_sigma_ratio", point.worst_sigma ? Json(*point.worst_sigma) : Json(nullptr)}};
+}
+
+namespace {
+
+Json cell_json(const CellNotes& cell) {
+  Json margins = Json::object();
+  for (const NamedValue& v : cell.joint_margins) margins[v.name] = v.value;
+  Json reduced = Json::array();
+  for (const BodyDistance& pair : cell.reduced)
+    reduced.push_back({{"between", {pair.first, pair.second}}, {"clearance", pair.distance}});
+  return {{"always_touching", cell.always_touching},
+          {"reduced_clearances", reduced},
+          {"uncalibrated_margin", cell.margin},
+          {"uncalibrated_joint_margins", margins}};
 }
 
 Json statistics_json(const PlanStatistics& s) {
@@ -284,7 +284,7 @@ std::string plan_json(const Plan& plan, const std::vector<WrittenWith>& files) {
                       {"rotation", plan.turn ? Json(*plan.turn) : Json(nullptr)},
                       {"test_pose_sigmas", plan.test_axes}};
   json["poses"] = Json::array();
-  for (const PlannedPose& pose : plan.poses) json["poses"].push_back(pose_json(pose));
+  for (const PlannedPose& pose : plan.poses) json["poses"].push_back(planned_pose_json(pose));
   json["statistics"] = statistics_json(plan.statistics);
   return json_text(json);
 }

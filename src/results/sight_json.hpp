@@ -17,5 +17,7 @@ nlohmann::ordered_json problem_json(const ProblemOrigin& problem);
 /// Key `files` of plans and routes.
 nlohmann::ordered_json files_json(const std::vector<WrittenWith>& files);
 nlohmann::ordered_json curve_point_json(const CurvePoint& point);
+/// An entry of `poses` of plans.
+nlohmann::ordered_json planned_pose_json(const PlannedPose& pose);
 
 }  // namespace posewright

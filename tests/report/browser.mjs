@@ -4,6 +4,7 @@ import { createRequire } from 'node:module';
 
 export const skipped = 77;
 const program = '/usr/bin/chromium';
+const firefox = '/usr/bin/firefox-esr';
 const quiet = [
   '--headless',
   '--no-sandbox',
@@ -25,7 +26,23 @@ export function missing() {
   return null;
 }
 
-const driver = () => createRequire(new URL('../../report/package.json', import.meta.url))('playwright-core').chromium;
+const playwright = () => createRequire(new URL('../../report/package.json', import.meta.url))('playwright-core');
+const driver = () => playwright().chromium;
+
+/** As missing(), of Firefox. */
+export function missingFirefox() {
+  if (!existsSync(firefox)) return 'Firefox is missing (apt-get install firefox-esr)';
+  try {
+    playwright();
+  } catch {
+    return 'playwright-core is missing (npm ci in report/ installs it)';
+  }
+  return null;
+}
+
+/** Debian's own, by WebDriver BiDi. It tells of no download. @param {string} downloadsPath folder for files that are saved */
+export const launchFirefox = (downloadsPath) =>
+  playwright().firefox.launch({ channel: 'moz-firefox', executablePath: firefox, headless: true, downloadsPath });
 
 /** @param {{webgl: boolean}} options */
 export const launch = ({ webgl }) =>

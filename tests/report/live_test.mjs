@@ -3,7 +3,7 @@
 // compensated program. DIR has posewright.js and posewright.wasm of `scripts/wasm`. Returns 77 where they or a browser are
 // missing. --address lets the page connect to a program outside of it, for trials.
 import { execFileSync } from 'node:child_process';
-import { copyFileSync, existsSync, mkdirSync, readFileSync } from 'node:fs';
+import { copyFileSync, existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { parseArgs } from 'node:util';
@@ -150,6 +150,50 @@ async function checkPlan(page) {
   check((await page.getByRole('button', { name: 'plan.json' }).count()) === 1, 'with its own text it can');
 }
 
+/** A pose that is moved in the report: what the page shows of the list is what the native program evaluates. */
+async function checkMove(page) {
+  about('a moved pose');
+  const report = page.frameLocator('#result iframe');
+  const value = async (id) => Number(await report.locator(`#list-${id}`).getAttribute('data-value'));
+  const verdict = report.locator('.mover .verdict');
+  await report.locator('.rows li .preview').last().click();
+  await report.locator('.mover summary').click();
+  const slider = report.getByRole('slider', { name: /^joint_a1 of pose/ });
+  await slider.waitFor();
+  check((await verdict.innerText()).startsWith('Feasible here'), 'where the plan has it a pose is feasible', await verdict.innerText());
+  const [before, tip] = [await value('logdet'), await report.locator('.view canvas, .view svg').first().getAttribute('data-tip')];
+  const judged = async (act) => {
+    await act();
+    await report.locator('.mover .verdict:not([data-asked])').waitFor();
+  };
+  const start = performance.now();
+  await judged(() => slider.fill('20'));
+  console.log(`A moved pose is judged after ${(performance.now() - start).toFixed(0)} ms`);
+  check((await report.locator('.view canvas, .view svg').first().getAttribute('data-tip')) !== tip, 'the picture follows');
+  check((await value('logdet')) !== before, 'so do the figures');
+  const list = join(out, 'moved.csv');
+  const { text: csv } = await download(page, () => report.getByRole('button', { name: 'Save as poses.csv' }).click());
+  writeFileSync(list, csv);
+  writeFileSync(join(out, 'moved.yaml'), await text(page));
+  mkdirSync(join(out, 'kr270'), { recursive: true });
+  copyFileSync(join(root, 'examples/kr270/kr270.urdf'), join(out, 'kr270/kr270.urdf'));
+  check(/,yes$/m.test(csv), 'a moved pose is locked');
+  const feasible = (await verdict.innerText()).startsWith('Feasible');
+  let evaluation;
+  try {
+    evaluation = JSON.parse(execFileSync(resolve(values.program), ['evaluate', 'moved.yaml', 'moved.csv', '--criterion', 'o1', '--candidates', '100', '--json', '--quiet'], { cwd: out, encoding: 'utf8', stdio: ['ignore', 'pipe', 'ignore'] }));
+  } catch {
+    evaluation = undefined;
+  }
+  check(Boolean(evaluation) === feasible, 'evaluate refuses what the page calls not feasible', await verdict.innerText());
+  if (evaluation) near(await value('logdet'), evaluation.criterion.log_det, 1e-6, 'log det is that of evaluate');
+  await report.getByRole('button', { name: 'Put it back' }).click();
+  near(await value('logdet'), before, 1e-12, 'put back it tells what it told');
+  await judged(() => report.getByRole('slider', { name: /^joint_a2 of pose/ }).fill('-20'));
+  await report.getByRole('button', { name: 'Reset', exact: true }).click();
+  near(await value('logdet'), before, 1e-12, 'Reset puts it back too');
+}
+
 /** Stop ends a search; the plan from before stays. */
 async function checkStop(page) {
   await step(page, /Plan/);
@@ -246,6 +290,26 @@ async function complaintWith(context, spoil) {
   return said;
 }
 
+/** `init --show` of an installation that has the page. */
+async function checkShow(context) {
+  about('init --show');
+  const installed = join(out, 'installed');
+  for (const folder of ['bin', 'share/posewright']) mkdirSync(join(installed, folder), { recursive: true });
+  copyFileSync(resolve(values.program), join(installed, 'bin/posewright'));
+  copyFileSync(file, join(installed, 'share/posewright/posewright.html'));
+  copyFileSync(join(root, 'examples/kr270/kr270.urdf'), join(out, 'kr270.urdf'));
+  const words = ['init', 'kr270.urdf', '--tracker', '--yes', '--show', '--force', '-o', 'shown.yaml'];
+  const said = execFileSync(join(installed, 'bin/posewright'), words, { cwd: out, encoding: 'utf8', env: { PATH: process.env.PATH } });
+  check(said.includes(join(out, 'shown.html')), 'the path of the page is printed', said);
+  const page = await context.newPage();
+  page.setDefaultTimeout(240_000);
+  await page.goto(`file://${join(out, 'shown.html')}`);
+  await page.waitForFunction(() => document.querySelector('.live-view')?.dataset.drawn);
+  check((await text(page)) === readFileSync(join(out, 'shown.yaml'), 'utf8'), 'the page begins with the problem');
+  check((await page.locator('.editor-part .messages li.error').count()) === 0, 'and can read all its files');
+  await page.close();
+}
+
 async function checkWeakBrowsers(context) {
   about('browsers that cannot run the program');
   const old = await complaintWith(context, () => (WebAssembly.compile = () => Promise.reject(new Error('invalid SIMD opcode'))));
@@ -274,6 +338,7 @@ await page.goto(`file://${file}`);
 await checkCell(page);
 await checkDrag(page);
 await checkPlan(page);
+await checkMove(page);
 await checkStop(page);
 await checkMeasured(page);
 await checkBadInput(page);
@@ -294,6 +359,7 @@ await page.waitForFunction(() => document.querySelector('.live-view')?.dataset.d
 check((await text(page)) === kept, 'the problem is there when the page is opened again');
 check(complaints.length === 0, 'no error, no warning, no request', complaints.join(' | '));
 await page.close();
+await checkShow(context);
 await checkWeakBrowsers(context);
 await browser.close();
 process.exitCode = verdict();

@@ -11,9 +11,8 @@ import {
   rowsOf,
   traceOfProduct,
 } from '../../report/src/numerics/packed.js';
-import { Neighbours, wholeNumbers } from '../../report/src/numerics/neighbours.js';
 import { PlanFigures } from '../../report/src/numerics/plan_figures.js';
-import { armAt, composed, nearby } from '../../report/src/view/kinematics.js';
+import { composed } from '../../report/src/view/kinematics.js';
 import { between, exaggerated } from '../../report/src/view/interpolate.js';
 import { amplification, amplified, largestDeviation } from '../../report/src/numerics/leg_points.js';
 import { counts } from '../../report/src/numerics/stations.js';
@@ -62,75 +61,13 @@ test('a singular matrix says where', () => {
   assert.equal(rowsOf(6), 3);
 });
 
-test('sixteen-bit numbers come back from base64', () => {
-  const numbers = Int16Array.from([0, 1, -1, 32767, -32767, 258]);
-  assert.deepEqual([...wholeNumbers(Buffer.from(numbers.buffer).toString('base64'))], [...numbers]);
-});
-
-test('the information of a moved pose is that of its polynomial block, and at no step its own', () => {
-  // One row, two columns, two coordinates: B = T0 + k1 T1 + k2 T2 + k1² T11 + k1 k2 T12 + k2² T22.
-  const terms = [[3, 1], [1, 0], [0, 2], [2, 2], [-1, 1], [1, -1]];
-  const data = {
-    places: [[0, 0], [2, -1]],
-    coordinates: [],
-    bodies: [['hand', 'table']],
-    reasons: ['collision'],
-    poses: [
-      {
-        id: 7,
-        rows: 1,
-        scale: [[0.5, 0.25], [0.1, 0.2], [0.01, 0.02]],
-        terms: Buffer.from(Int16Array.from(terms.flat()).buffer).toString('base64'),
-        verdicts: [-1, 0],
-        told: [1, 0],
-        clearance: [1234, 0],
-        between: [0, -1],
-      },
-    ],
-  };
-  const neighbours = new Neighbours(data, 2);
-  const own = [9, 4, 5];
-  assert.deepEqual([...neighbours.information(7, [0, 0], own)], own);
-  const b = [
-    0.5 * 3 + 0.1 * (2 * 1 - 0) + 0.01 * (4 * 2 - 2 * -1 + 1 * 1),
-    0.25 * 1 + 0.2 * (2 * 0 - 2) + 0.02 * (4 * 2 - 2 * 1 + 1 * -1),
-  ];
-  const [b0, b1] = [1.5, 0.25];
-  const expected = [9 + b[0] ** 2 - b0 ** 2, 4 + b[0] * b[1] - b0 * b1, 5 + b[1] ** 2 - b1 ** 2];
-  neighbours.information(7, [2, -1], own).forEach((v, k) => near(v, expected[k]));
-  assert.deepEqual(neighbours.place(7, [0, 0]), { reason: null, nearest: { distance: 1234 * 1e-4, between: ['hand', 'table'] }, told: true });
-  assert.deepEqual(neighbours.place(7, [2, -1]), { reason: 'collision', nearest: undefined, told: false });
-  assert.equal(neighbours.place(7, [1, 1]), null);
-});
-
-test('an arm of two links follows its joints', () => {
-  const still = [0, 0, 0, 0, 0, 0, 1];
-  const joint = (x, coordinate, prismatic = false) => ({
-    placement: [x, 0, 0, 0, 0, 0, 1],
-    axis: prismatic ? [0, 1, 0] : [0, 0, 1],
-    prismatic,
-    multiplier: 1,
-    offset: 0,
-    coordinate,
-  });
-  const chain = { base: still, joints: [joint(0, 0), joint(1.2, 1), joint(0, 2, true)], tip: [0.8, 0, 0, 0, 0, 0, 1], targets: [[0, 0, 0.1]] };
-  const [a, b, s] = [0.3, -1.1, 0.05];
-  const { tip, lines, targets, frames } = armAt(chain, [a, b, s]);
-  const x = 1.2 * Math.cos(a) + 0.8 * Math.cos(a + b) - s * Math.sin(a + b);
-  const y = 1.2 * Math.sin(a) + 0.8 * Math.sin(a + b) + s * Math.cos(a + b);
-  [x, y, 0].forEach((v, k) => near(tip[k], v));
-  [x, y, 0.1].forEach((v, k) => near(targets[0][k], v));
-  assert.equal(frames.length, 4);
-  assert.equal(lines[0].length, 5);
+test('placements are composed as their turns and shifts', () => {
+  const [a, b] = [0.3, -1.1];
+  const turned = (angle, x) => [x, 0, 0, 0, 0, Math.sin(angle / 2), Math.cos(angle / 2)];
+  const tip = composed(composed(turned(a, 0), turned(b, 1.2)), turned(0, 0.8));
+  near(tip[0], 1.2 * Math.cos(a) + 0.8 * Math.cos(a + b));
+  near(tip[1], 1.2 * Math.sin(a) + 0.8 * Math.sin(a + b));
   near(2 * Math.atan2(tip[5], tip[6]), a + b);
-  assert.deepEqual(composed(still, tip), tip);
-});
-
-test('a robot without a chain moves to first order', () => {
-  const drawn = (x, z) => ({ frames: [], lines: [[[x, 0, 0]]], tip: [x, 0, z, 0, 0, 0, 1], targets: [null] });
-  const { tip, lines } = nearby(drawn(1, 0), [drawn(4, 0), drawn(1, 3)], [1 / 3, -2 / 3]);
-  assert.deepEqual(tip, [2, 0, -2, 0, 0, 0, 1]);
-  assert.deepEqual(lines[0][0].slice(0, 2), [2, 0]);
 });
 
 /** Two links, parameters Δl1, l1 Δθ1, Δl2, l2 Δθ2 of absolute angles: det M = (N² − |Σ exp(i q2)|²)². */

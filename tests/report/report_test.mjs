@@ -7,7 +7,7 @@ import { launch, missing, open, skipped } from './browser.mjs';
 import { about, check, verdict } from './checks.mjs';
 import { checkAltered } from './altered_checks.mjs';
 import { makeReports } from './make_reports.mjs';
-import { checkCamera, checkMoves } from './moves_checks.mjs';
+import { checkCamera, checkLocks } from './moves_checks.mjs';
 import { checkNumbers } from './numbers_checks.mjs';
 import { checkList, checkOverview, checkPlots, checkViewer } from './page_checks.mjs';
 import { checkReading, checkRepeat, overflow } from './reading_checks.mjs';
@@ -42,7 +42,7 @@ async function checkCase(browser, c) {
   await checkOverview(page, c);
   await checkPlots(page, c);
   await checkList(page, c, values.program);
-  await checkMoves(page, c, values.program);
+  await checkLocks(page, c, values.program);
   if (c.data.camera) await checkCamera(page, c);
   await checkReading(page, c);
   if (!c.route) await checkRepeat(page, c, values.program);

@@ -63,8 +63,6 @@ class Collision {
 
   /// The two bodies that are nearest to each other, of all pairs that are checked; none if nothing is.
   std::optional<Separation> nearest(std::span<const double> q) const;
-  /// Variant without the nearest points, which take as long again.
-  std::optional<Separation> nearest_bodies(std::span<const double> q) const;
   /// Variant for the straight motion, where the smallest distance is at most half a millimetre below the one returned.
   std::optional<Separation> nearest(std::span<const double> from, std::span<const double> to) const;
 

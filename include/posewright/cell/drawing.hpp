@@ -15,7 +15,6 @@
 namespace posewright {
 
 class BodyFrames;
-struct ChainDescription;
 
 /// One shape of a link, the tool or an obstacle as it is drawn.
 struct DrawnBody {
@@ -34,21 +33,6 @@ struct DrawnPose {
   std::vector<Polyline> lines;  ///< arm from base to tip, or legs and rims
   Eigen::Isometry3d tip = Eigen::Isometry3d::Identity();
   std::vector<std::optional<Eigen::Vector3d>> targets;
-};
-
-/// A serial arm for a page that follows a joint, as BodyFrames::poses does.
-struct DrawnChain {
-  struct Joint {
-    Eigen::Isometry3d X_ParentJoint = Eigen::Isometry3d::Identity();
-    Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< in the joint's frame
-    bool prismatic = false;
-    double multiplier = 1.0, offset = 0.0;  ///< value = multiplier · coordinate + offset
-    int coordinate = 0;                     ///< index in a configuration
-  };
-  Eigen::Isometry3d X_MeasureBase = Eigen::Isometry3d::Identity();
-  std::vector<Joint> joints;
-  Eigen::Isometry3d X_LastTip = Eigen::Isometry3d::Identity();
-  std::vector<Eigen::Vector3d> targets;  ///< tip frame, m
 };
 
 /// A camera and the points that it looks at; one of the two rides on the tip, the other is in the measurement frame.
@@ -76,8 +60,6 @@ class Drawing {
   const std::vector<std::string>& targets() const { return target_names_; }
   /// Instruments that stand still.
   const std::vector<std::pair<std::string, Eigen::Isometry3d>>& stations() const { return stations_; }
-  /// For a serial arm measured at one configuration at a time; none for others.
-  const std::optional<DrawnChain>& chain() const { return chain_; }
   /// For an instrument that takes pictures; none for others.
   const std::optional<DrawnCamera>& camera() const { return camera_; }
   /// As its URDF calls it; empty: it has none.
@@ -91,7 +73,6 @@ class Drawing {
  private:
   void add_bodies(const Problem& problem);
   void keep_to_budget();
-  void add_chain(const ChainDescription& chain);
   void add_instrument(const MeasurementSpec& measurement, const Cell& cell);
 
   std::shared_ptr<const IdentificationModel> model_;
@@ -102,7 +83,6 @@ class Drawing {
   std::vector<Eigen::Vector3d> targets_;  // tip frame
   std::vector<std::pair<std::string, Eigen::Isometry3d>> stations_;
   std::vector<DrawnBody> bodies_;
-  std::optional<DrawnChain> chain_;
   std::optional<DrawnCamera> camera_;
   std::string robot_, warning_;
 };

@@ -52,22 +52,6 @@ struct ReportCandidates {
   std::vector<int> chosen;                 ///< those that are poses of the plan
 };
 
-/// A serial arm as the page moves it: value of joint k = multiplier · coordinate + offset, about or along its axis
-/// behind its placement in the frame before.
-struct ReportChain {
-  struct Joint {
-    Eigen::Isometry3d X_ParentJoint = Eigen::Isometry3d::Identity();
-    Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
-    bool prismatic = false;
-    double multiplier = 1.0, offset = 0.0;
-    int coordinate = 0;  ///< among those that are written of a pose
-  };
-  Eigen::Isometry3d X_MeasureBase = Eigen::Isometry3d::Identity();
-  std::vector<Joint> joints;
-  Eigen::Isometry3d X_LastTip = Eigen::Isometry3d::Identity();
-  std::vector<Eigen::Vector3d> targets;  ///< tip frame, m
-};
-
 /// A camera, its board and where the camera will see the board's points.
 struct ReportCamera {
   bool on_tip =
@@ -78,41 +62,6 @@ struct ReportCamera {
   std::vector<std::pair<std::string, Eigen::Vector3d>> points;  ///< board frame, m
   /// By pose id: u, v of every point, px; NaN: not predicted.
   std::vector<std::pair<int, std::vector<Eigen::Vector2d>>> pictures;
-};
-
-/// Data for poses moved by the page's reader: by whole steps of one or two coordinates to either side of a pose,
-/// all of them looked at. `places` says their order.
-struct ReportNeighbours {
-  struct Coordinate {
-    int index = 0;      ///< among those that are written of a pose
-    double step = 0.0;  ///< rad or m
-    double lower = 0.0, upper = 0.0;
-  };
-  /// One pose's; places in the order of `places`.
-  struct Pose {
-    int id = 0;
-    std::vector<double> steps;      ///< of this pose: those of the coordinates, halved as often as its blocks needed it
-    std::vector<int> verdicts;      ///< index into reasons; −1: feasible
-    std::vector<bool> told;         ///< whether the interpolated block stands for the model's there
-    std::vector<double> clearance;  ///< m; empty: nothing is checked for collision
-    std::vector<int> between;       ///< index into bodies; −1: none
-    /// Whitened blocks times tolerance near the pose: B(k) = T₀ + Σ k_i T_i + Σ_{i≤j} k_i k_j T_ij with the steps k,
-    /// terms in this order, rows × columns each, as whole numbers: entry · scale[order][column], order 0, 1, 2.
-    int rows = 0;
-    std::vector<std::int16_t> terms;
-    std::array<std::vector<double>, 3> scale;
-    /// Instead of a chain: what is drawn at one step of each coordinate.
-    std::vector<ReportKeyframe> drawn;
-  };
-  int reach = 0;  ///< steps to either side
-  std::vector<Coordinate> coordinates;
-  std::vector<std::vector<int>> places;  ///< k of every coordinate
-  std::vector<std::string> reasons;
-  std::vector<std::pair<std::string, std::string>> bodies;
-  std::vector<Pose> poses;
-  /// Over all places that are told: |Δ log det| / parameters of interest, largest |Δσ|/σ, |Δρ0|/ρ0, of the plan with
-  /// that pose moved alone.
-  double efficiency_error = 0.0, sigma_error = 0.0, accuracy_error = 0.0;
 };
 
 /// Data of the report's page besides plan and route.
@@ -128,10 +77,7 @@ struct Report {
   std::vector<ReportKeyframe> keyframes;                       ///< in measuring order
   ReportInformation information;
   std::optional<ReportCandidates> candidates;
-  std::optional<ReportChain> chain;
   std::optional<ReportCamera> camera;
-  std::optional<ReportNeighbours> neighbours;
-  std::string why_no_neighbours;        ///< if there are none
   std::vector<double> position_errors;  ///< predicted, at feasible configurations spread like the candidates, m
   std::vector<CurvePoint> curve;        ///< other numbers of poses; worst_sigma is σ / tolerance
   std::vector<std::optional<CurvePoint>> prefix;  ///< after each pose in measuring order; none: not identifiable yet

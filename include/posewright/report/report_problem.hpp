@@ -12,7 +12,6 @@ struct ReportOptions {
   std::filesystem::path route;  ///< route.json of the same plan; empty: poses in the plan's order, no motions
   bool sizes = true;            ///< plan for other numbers of poses too, to show their effect
   bool candidates = true;       ///< draw the plan's candidates again to show the gain of each
-  bool moves = true;            ///< compute the neighbourhood of each pose, so that it can be moved on the page
   int threads = 0;              ///< 0 = all
 };
 

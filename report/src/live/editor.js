@@ -22,8 +22,11 @@ export function editor(project) {
         return h('div', { class: message?.kind, title: message?.text }, message ? `${message.kind === 'error' ? '✕' : '!'} ${k + 1}` : String(k + 1));
       }),
     );
+    fit();
     gutter.scrollTop = area.scrollTop;
   };
+  /** The bar below long lines takes nothing of the last line. */
+  const fit = () => box.style.setProperty('--bar', `${area.offsetHeight - area.clientHeight}px`);
   const goTo = (line) => {
     const start = area.value.split('\n').slice(0, line - 1).reduce((sum, l) => sum + l.length + 1, 0);
     area.focus();
@@ -46,8 +49,11 @@ export function editor(project) {
     number();
   });
 
+  const box = h('div', { class: 'editor' }, gutter, area);
+  new ResizeObserver(fit).observe(area);
+
   return {
-    element: h('div', { class: 'editor-part' }, h('div', { class: 'editor-head' }, h('h2', {}, 'Problem file'), undo), list, h('div', { class: 'editor' }, gutter, area)),
+    element: h('div', { class: 'editor-part' }, h('div', { class: 'editor-head' }, h('h2', {}, 'Problem file'), undo), list, box),
     /** @param {import('./messages.js').Message[]} found */
     show(found) {
       messages = found;

@@ -6,6 +6,7 @@ import { messagesOf } from './messages.js';
 import { Program } from './program.js';
 import { Project, joined, nameOf } from './project.js';
 import { resultFrame } from './result_frame.js';
+import { placeMeshes, robotAmong } from './robot_files.js';
 import { cellStep } from './steps/cell.js';
 import { instrumentStep } from './steps/instrument.js';
 import { measuredStep } from './steps/measured.js';
@@ -30,6 +31,7 @@ import { documentOf } from './yaml_edit.js';
  * @property {() => string[]} [instrumentWords] options of init
  * @property {boolean} [planning]
  * @property {() => void} quickLook the error to expect, roughly
+ * @property {() => Promise<void>} showPlan the report of the plan that is there
  * @property {{text: string, bytes: Uint8Array, poses: Uint8Array}} [quick] its plan, its poses, and the problem they are for
  */
 
@@ -41,7 +43,12 @@ const live = {
   project,
   look: new Program(),
   work: new Program(),
-  result: resultFrame(project),
+  result: resultFrame(project, async (csv) => {
+    const list = joined(project.folder, 'moved.csv');
+    const files = new Map([...project.files, [list, new TextEncoder().encode(csv)]]);
+    const { code, out, err } = await live.look.run({ args: ['report', 'plan.json', '--problem', nameOf(project.problem), '--judge', 'moved.csv', '--json'], files, folder: project.folder });
+    return code === 0 ? JSON.parse(out) : { failed: messagesOf(err, '').map((m) => m.text).join(' ') || 'The program was stopped.' };
+  }),
   complain(text) {
     said.textContent = text;
     said.hidden = text === '';
@@ -105,5 +112,8 @@ for (const name of ['dragover', 'drop']) addEventListener(name, (event) => event
 const given = document.getElementById('given').textContent;
 if (given.startsWith('{')) {
   const { files, problem } = JSON.parse(given);
-  live.project.open(new Map(Object.entries(files).map(([path, text]) => [path, Uint8Array.from(atob(text), (c) => c.charCodeAt(0))])), problem);
+  const bytes = new Map(Object.entries(files).map(([path, text]) => [path, Uint8Array.from(atob(text), (c) => c.charCodeAt(0))]));
+  const robot = robotAmong(bytes);
+  if (robot) placeMeshes(bytes, robot);
+  live.project.open(bytes, problem);
 } else live.project.restore();

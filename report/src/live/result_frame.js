@@ -2,9 +2,9 @@ import { h } from '../dom.js';
 
 /**
  * The page that the program writes, as it is, in a frame that is as high as what it shows.
- * @param {import('./project.js').Project} project
+ * @param {import('./project.js').Project} project @param {(csv: string) => Promise<any>} judged what the program says of poses
  */
-export function resultFrame(project) {
+export function resultFrame(project, judged) {
   const title = h('h2', { id: 'result-title' }, 'Result');
   const holder = h('div', {});
   const element = h('section', { id: 'result', class: 'result', hidden: true, 'aria-labelledby': 'result-title' }, title, holder);
@@ -18,6 +18,8 @@ export function resultFrame(project) {
       shown = { what, text: project.text };
       tell();
       const frame = h('iframe', { title: what, srcdoc: html });
+      const { text } = shown;
+      frame.judge = async (csv) => (project.text === text ? judged(csv) : { failed: 'The problem has changed since this plan: undo the change, or plan again.' });
       frame.addEventListener('load', () => {
         const { documentElement } = frame.contentDocument;
         new ResizeObserver(() => (frame.style.height = `${documentElement.offsetHeight + 4}px`)).observe(documentElement);

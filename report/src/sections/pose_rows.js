@@ -79,7 +79,6 @@ function row(list, entry, place, preview) {
   );
   const notes = [
     pose.moved && 'moved',
-    list.unknown.includes(entry.id) && 'its figures are not known',
     ...choiceTexts(pose),
     list.unreachable.has(entry.id) && 'not reachable',
   ]

@@ -39,7 +39,7 @@ export function posesSection(list) {
     h(
       'p',
       { class: 'lead' },
-      'Every dot is the tip at one pose. Click a dot or a row to see the robot there. Untick a pose that cannot be measured, or move it, and see at once what that costs.',
+      'Every dot is the tip at one pose. Click a dot or a row to see the robot there. Untick a pose that cannot be measured, and see at once what that costs.',
     ),
     h(
       'div',
@@ -67,10 +67,8 @@ export function posesSection(list) {
 
 /** What the reader must know of a changed list. @param {import('../pose_list.js').PoseList} list */
 function warningsOf(list) {
-  const { unknown } = list;
-  const refused = list.ids.filter((id) => list.moves.has(id) && list.known(id)?.reason);
+  const refused = list.ids.filter((id) => list.moves.get(id));
   return [
-    unknown.length > 0 && `Figures are those of the list without pose ${joined(unknown.map(String))}: its readings are not known on this page.`,
     refused.length > 0 && `Pose ${joined(refused.map(String))}: not feasible where it is now.`,
     Boolean(list.report.route) &&
       list.changed &&

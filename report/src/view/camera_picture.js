@@ -7,14 +7,13 @@ import { h, svg } from '../dom.js';
 export function cameraPicture(list) {
   const { camera } = list.report;
   if (!camera) return null;
-  const pictures = new Map(camera.pictures.map((p) => [p.pose, p.pixels]));
   const [width, height] = camera.size;
   const drawing = svg('svg', { class: 'camera', viewBox: `0 0 ${width} ${height}`, role: 'img' });
   const caption = h('figcaption', { class: 'note' });
   const element = h('figure', { class: 'camera-picture' }, drawing, caption);
   const fill = () => {
     const pose = list.poses.get(list.current ?? -1);
-    const pixels = pose && !pose.moved ? pictures.get(pose.id) : undefined;
+    const pixels = pose && list.pictures.get(pose.id);
     element.hidden = !pose;
     const parts = [svg('rect', { class: 'frame', width, height })];
     if (pixels) parts.push(...points(pixels, hiddenPoints(camera, pose), width));
@@ -48,7 +47,6 @@ function points(pixels, hidden, width) {
 /** @param {any} camera @param {any} pose @param {any[]|undefined} pixels */
 function captionOf(camera, pose, pixels) {
   if (!pose) return '';
-  if (pose.moved) return 'The picture of a pose that was moved here is not predicted.';
   if (!pixels) return `No picture is predicted at pose ${pose.id}.`;
   const hidden = hiddenPoints(camera, pose).filter(Boolean).length;
   return (

@@ -1,6 +1,7 @@
 import { h } from '../../dom.js';
 import { usualError } from '../../numerics/expected_error.js';
 import { quantity } from '../../text/units.js';
+import { messagesOf } from '../messages.js';
 import { joined, nameOf } from '../project.js';
 import { taskLine } from '../task.js';
 import { documentOf, withValue } from '../yaml_edit.js';
@@ -61,9 +62,14 @@ export function planStep(live) {
 
   const showReport = async () => {
     expected.textContent = errorText(JSON.parse(project.read(planFile())));
-    const done = await task.run(['report', 'plan.json', '--brief', '-o', 'report.html', '--force', '--quiet'], 'The report');
+    const done = await task.run(['report', 'plan.json', '--problem', nameOf(project.problem), '--brief', '-o', 'report.html', '--force', '--quiet'], 'The report');
     const page = project.read(inFolder('report.html'));
     if (done.code === 0 && page) live.result.show('Plan', page);
+    return done;
+  };
+  live.showPlan = async () => {
+    const { code, err } = await showReport();
+    if (code !== 0) live.complain(messagesOf(err, '').map((m) => m.text).join(' '));
   };
 
   /** The plan of the quick look takes the place of one that was stopped. */

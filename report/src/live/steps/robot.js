@@ -1,6 +1,6 @@
 import { h } from '../../dom.js';
 import { dropZone } from '../dropped.js';
-import { nameOf } from '../project.js';
+import { folderOf, joined, nameOf } from '../project.js';
 import { hasMesh, placeMeshes, robotAmong } from '../robot_files.js';
 
 /**
@@ -15,7 +15,16 @@ export function robotStep(live, examples) {
     if (problem) {
       live.complain('');
       say.textContent = `${problem} is read.`;
-      return live.project.open(all, problem);
+      const plan = joined(folderOf(problem), 'plan.json');
+      const made = new Map(files.has(plan) ? [[plan, new TextDecoder().decode(files.get(problem))]] : []);
+      live.project.open(all, problem, made);
+      return made.size > 0 && live.showPlan();
+    }
+    if (files.size === 1 && files.has('plan.json')) {
+      if (live.project.text === '') return live.complain('A plan needs its problem file: drop it with the problem file and the robot.');
+      live.complain('');
+      live.project.add([[joined(live.project.folder, 'plan.json'), files.get('plan.json')]], live.project.text);
+      return live.showPlan();
     }
     const robot = robotAmong(files) ?? (hasMesh(files) ? live.robotOf() : undefined);
     if (!robot || !all.has(robot)) return live.complain('Among these files is no robot: a URDF (or the output of xacro) has <robot> at its beginning.');
@@ -48,7 +57,7 @@ export function robotStep(live, examples) {
   return h(
     'div',
     {},
-    dropZone({ label: 'Choose files', hint: 'Drop a URDF with its meshes, a folder with both, or a problem file.', take, complain: live.complain, folder: true }),
+    dropZone({ label: 'Choose files', hint: 'Drop a URDF with its meshes, a folder with both, or a problem file, maybe with its plan.json.', take, complain: live.complain, folder: true }),
     h('p', {}, 'or ', example),
     say,
     h('p', { class: 'note' }, 'Nothing leaves this page: the program runs inside it, without network.'),

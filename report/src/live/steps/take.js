@@ -23,7 +23,7 @@ export function takeStep(live) {
     buttons.replaceChildren(...now.map((path) => h('button', { onclick: () => saveFile(path, project.files.get(path)) }, nameOf(path))));
     const names = there.filter((path) => !now.includes(path)).map(nameOf);
     old.textContent = names.length > 0 ? `The problem has changed since ${names.join(', ')}: plan or calibrate again, or undo the change.` : project.files.has(planFile()) ? '' : 'There is no plan yet: the step "Plan" makes one.';
-    go.disabled = !project.current(planFile());
+    go.disabled = formats.length === 0 || !project.current(planFile());
   };
   const go = h('button', { class: 'main', disabled: true }, 'Write the program');
   go.addEventListener('click', async () => {
@@ -41,6 +41,7 @@ export function takeStep(live) {
     formats = (await live.list(['export', '--to', 'list']))?.formats ?? [];
     format.replaceChildren(...formats.map((f) => h('option', { value: f.name }, `${f.name}: ${f.description}`)));
     format.dispatchEvent(new Event('change'));
+    show();
   };
   for (const event of ['text', 'files']) project.addEventListener(event, show);
   const element = h(

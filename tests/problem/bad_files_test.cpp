@@ -71,7 +71,7 @@ const BadFile root[] = {
 
 const BadFile serial_robot[] = {
     {"RobotKeyUnknown", arm, "base: base_link", "bse: base_link", 4,
-     "unknown key 'bse' (did you mean 'base'?); allowed: urdf, xacro, srdf, group, base, tip, placement, "
+     "unknown key 'bse' (did you mean 'base'?); allowed: urdf, xacro, srdf, group, base, tip, hold, placement, "
      "encoder_noise, parameter_names, "
      "elastostatic"},
     {"RobotKeyTwice", arm, "tip: flange", "base: flange", 5, "duplicate key 'base'; first given on line 4"},

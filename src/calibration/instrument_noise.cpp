@@ -99,12 +99,6 @@ Likelihood likelihood_of(const FittedRows& rows, const std::vector<MeasuredPose>
   const Eigen::VectorXd length = rows.J.colwise().norm().cwiseMax(1e-300).transpose();
   const Eigen::MatrixXd J = rows.J * length.cwiseInverse().asDiagonal();
   const Eigen::VectorXd y = rows.r + J * fit.change.cwiseProduct(length);
-  Eigen::VectorXd precision = Eigen::VectorXd::Constant(length.size(), least_precision);
-  for (Eigen::Index j = 0; j < length.size(); ++j) {
-    const Parameter& p = columns.parameters[std::size_t(j)];
-    const double spread = fit.spreads[std::size_t(columns.selected[std::size_t(j)])];
-    if (counts(p, prior)) precision[j] += 1 / std::pow(p.tolerance * spread * length[j], 2);
-  }
   std::vector<ReadingsOfInstrument> parts(instruments);
   for (ReadingsOfInstrument& part : parts) {
     part.information.setZero(length.size(), length.size());
@@ -119,7 +113,8 @@ Likelihood likelihood_of(const FittedRows& rows, const std::vector<MeasuredPose>
     part.gradient += stated * J(own, Eigen::all).transpose() * y(own);
     part.square += stated * y(own).squaredNorm();
   }
-  return {std::move(parts), std::move(precision)};
+  const Eigen::VectorXd precision = tolerance_precision(columns, fit.spreads, prior, length);
+  return {std::move(parts), precision.array() + least_precision};
 }
 
 }  // namespace

@@ -40,6 +40,18 @@ Eigen::VectorXd spreads_of(const VariantColumns& columns, const std::vector<doub
   return own;
 }
 
+Eigen::VectorXd tolerance_precision(const VariantColumns& columns, const std::vector<double>& spreads, Prior prior,
+                                    const Eigen::VectorXd& length) {
+  Eigen::VectorXd precision = Eigen::VectorXd::Zero(length.size());
+  for (Eigen::Index j = 0; j < length.size(); ++j) {
+    const Parameter& p = columns.parameters[std::size_t(j)];
+    if (!counts(p, prior)) continue;
+    const double spread = spreads[std::size_t(columns.selected[std::size_t(j)])];
+    precision[j] = 1 / std::pow(p.tolerance * spread * length[j], 2);
+  }
+  return precision;
+}
+
 FittedRows whitened_rows(const IdentificationModel& model, const std::vector<int>& selected,
                          const std::vector<MeasuredPose>& poses, const std::vector<double>& correction,
                          const std::vector<Eigen::VectorXd>& residuals) {

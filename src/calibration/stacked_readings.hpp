@@ -21,6 +21,12 @@ bool linearise_at(const IdentificationModel& model, const MeasuredPose& pose, co
 /// Multiples of the tolerances of these columns, from those of all parameters; empty: one.
 Eigen::VectorXd spreads_of(const VariantColumns& columns, const std::vector<double>& spreads);
 
+/// Of each column, what the tolerance that counts knows of it: 1/(tolerance · spread · length)², 0 for the others.
+/// @param spreads  of all parameters, as Fit has them
+/// @param length   the column is counted in units of 1/length
+Eigen::VectorXd tolerance_precision(const VariantColumns& columns, const std::vector<double>& spreads, Prior prior,
+                                    const Eigen::VectorXd& length);
+
 /// Linear problem of a fit, whitened: columns of `selected`, residuals.
 struct FittedRows {
   Eigen::MatrixXd J;

@@ -29,7 +29,8 @@ class VisitLikelihood {
     const FittedRows rows = whitened_rows(model, selected, poses, fit.correction, fit.residuals);
     const auto m = Eigen::Index(columns.selected.size());
     const Eigen::VectorXd length = rows.J.leftCols(m).colwise().norm().cwiseMax(1e-300);
-    take_prior(columns, fit, prior, length);
+    precision_ = tolerance_precision(columns, fit.spreads, prior, length);
+    at_ = fit.change.cwiseProduct(length);
     for (int part = 0; part < 2; ++part)
       unit_[part] =
           std::sqrt(double(rows.J.rows()) / std::max(rows.J.middleCols(m + 3 * part, 3).squaredNorm(), 1e-300));
@@ -71,17 +72,6 @@ class VisitLikelihood {
   struct Pose {
     Eigen::MatrixXd along, rows;
   };
-
-  void take_prior(const VariantColumns& columns, const Fit& fit, Prior prior, const Eigen::VectorXd& length) {
-    precision_.setZero(length.size());
-    at_ = fit.change.cwiseProduct(length);
-    for (Eigen::Index j = 0; j < length.size(); ++j) {
-      const Parameter& p = columns.parameters[std::size_t(j)];
-      if (!counts(p, prior)) continue;
-      const double spread = fit.spreads[std::size_t(columns.selected[std::size_t(j)])];
-      precision_[j] = 1 / std::pow(p.tolerance * spread * length[j], 2);
-    }
-  }
 
   void add_pose(const FittedRows& rows, std::size_t k, const Eigen::MatrixXd& all) {
     const int first = rows.first[k], count = rows.first[k + 1] - first;

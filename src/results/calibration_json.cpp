@@ -128,10 +128,9 @@ Json residuals_json(const Calibration& c) {
 /// Null where it is not judged; members are null where no estimate predicts.
 Json help_json(const std::optional<InstrumentHelp>& help) {
   if (!help) return nullptr;
-  const auto finite = [](double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); };
-  return {{"with", finite(help->with)},
-          {"without", finite(help->without)},
-          {"standard_errors", finite(help->gain)},
+  return {{"with", finite_or_null(help->with)},
+          {"without", finite_or_null(help->without)},
+          {"standard_errors", finite_or_null(help->gain)},
           {"alone", help->alone}};
 }
 

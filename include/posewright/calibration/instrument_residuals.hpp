@@ -15,7 +15,6 @@ struct InstrumentHelp {
   double gain = 0.0;                 ///< mean of without² − with², paired by pose, in its own standard errors
   std::vector<std::string> alone{};  ///< columns that the others' readings do not determine
 
-  bool helps() const { return gain > 2.0; }
   bool harms() const { return gain < -2.0; }
 };
 

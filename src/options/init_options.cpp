@@ -72,7 +72,7 @@ const OptionTable<InitCall>& init_options() {
           });
     t.text(
         "samples", "FILE",
-        "samples of hand-eye calibration in place of ROBOT: easy_handeye2, MoveIt, CSV with robot.* and pose.*",
+        "samples of hand-eye calibration in place of ROBOT: easy_handeye2, MoveIt, OpenCV, CSV with robot.* and pose.*",
         [](C & o) -> auto& { return o.facts.samples; }, OptionKind::file);
     t.row(
         {"at", "X,Y,Z", "position of tracker, board or fixed camera in the base frame (in front)", OptionKind::blocks},

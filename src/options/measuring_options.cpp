@@ -100,9 +100,10 @@ const OptionTable<CalibrateCall>& calibrate_options() {
     t.row(
         {"no-prior", "", "plain least squares, without manufacturing tolerances as prior knowledge", OptionKind::flag},
         [](C& o, const GivenOption&) { o.prior = Prior::none; });
-    t.of_program("samples", "FILE",
-                 "samples of hand-eye calibration in place of PROBLEM and DATA.csv: easy_handeye2, MoveIt, CSV with "
-                 "robot.* and pose.*");
+    t.of_program(
+        "samples", "FILE",
+        "samples of hand-eye calibration in place of PROBLEM and DATA.csv: easy_handeye2, MoveIt, OpenCV, CSV with "
+        "robot.* and pose.*");
     t.text("validate", "FILE", "more measured data, for validation; they are not fitted", &C::validate,
            OptionKind::file);
     t.row({"moved", "WHAT",

@@ -86,6 +86,45 @@ std::string easy_text(const Drawn& drawn, bool on_hand) {
   return text;
 }
 
+std::string numbers(const std::vector<double>& values) { return fmt::format("[ {} ]", fmt::join(values, ", ")); }
+
+/// As cv::FileStorage of OpenCV 4.6 writes lists of matrices under the names of calibrateHandEye's arguments.
+std::string opencv_text(const Drawn& drawn) {
+  std::string text = "%YAML:1.0\n---\n";
+  for (const bool seen : {false, true})
+    for (const bool rotation : {true, false}) {
+      text += fmt::format("{}_{}:\n", rotation ? "R" : "t", seen ? "target2cam" : "gripper2base");
+      for (const auto& sample : drawn.samples) {
+        const Eigen::Matrix4d X = (seen ? sample.second : sample.first).matrix();
+        const int cols = rotation ? 3 : 1;
+        std::vector<double> data;
+        for (int i = 0; i < 3 * cols; ++i) data.push_back(rotation ? X(i / 3, i % 3) : X(i, 3));
+        text += fmt::format("   - !!opencv-matrix\n      rows: 3\n      cols: {}\n      dt: d\n      data: {}\n", cols,
+                            numbers(data));
+      }
+    }
+  return text;
+}
+
+/// As Python writes arrays of rotation vectors and of translations, here those of calibrateRobotWorldHandEye.
+std::string opencv_arrays(const Drawn& drawn) {
+  std::string text = "%YAML:1.0\n---\n";
+  for (const bool seen : {false, true})
+    for (const bool rotation : {true, false}) {
+      std::vector<double> data;
+      for (const auto& sample : drawn.samples) {
+        const Isometry3d X = seen ? sample.second : sample.first.inverse();
+        const Eigen::AngleAxisd turn(X.linear());
+        const Vector3d v = rotation ? Vector3d(turn.angle() * turn.axis()) : Vector3d(X.translation());
+        data.insert(data.end(), v.begin(), v.end());
+      }
+      text +=
+          fmt::format("{}_{}: !!opencv-matrix\n   rows: {}\n   cols: 3\n   dt: d\n   data: {}\n", rotation ? "R" : "t",
+                      seen ? "world2cam" : "base2gripper", drawn.samples.size(), numbers(data));
+    }
+  return text;
+}
+
 std::string csv_text(const Drawn& drawn) {
   std::string text =
       "id,robot.x [mm],robot.y [mm],robot.z [mm],robot.qx,robot.qy,robot.qz,robot.qw,pose.x,pose.y,pose.z,"
@@ -118,7 +157,8 @@ TEST(SamplesProblem, FindsTheMountAndBothFramesFromEveryForm) {
     const Drawn d = drawn(on_hand, 3);
     const Isometry3d tool = d.camera, base = d.board.inverse();
     std::vector<std::string> texts;
-    for (const std::string& text : {moveit_text(d), easy_text(d, on_hand), csv_text(d)}) {
+    for (const std::string& text :
+         {moveit_text(d), easy_text(d, on_hand), csv_text(d), opencv_text(d), opencv_arrays(d)}) {
       const auto file = folder.write("samples.txt", text);
       const SamplesProblem found = samples_problem(file, {});
       EXPECT_EQ(found.on_hand, on_hand);
@@ -130,7 +170,7 @@ TEST(SamplesProblem, FindsTheMountAndBothFramesFromEveryForm) {
       EXPECT_LT((frame(result, "base").X.translation() - base.translation()).norm(), 5e-3);
       texts.push_back(found.text.substr(found.text.find("placement:"), 300));
     }
-    EXPECT_EQ(texts[0].substr(0, 60), texts[2].substr(0, 60));
+    for (const int other : {2, 3, 4}) EXPECT_EQ(texts[0].substr(0, 60), texts[std::size_t(other)].substr(0, 60));
   }
 }
 
@@ -181,7 +221,7 @@ TEST(SamplesProblem, NamesWrongSamplesAndFindsTheFramesWithoutThem) {
 TEST(SamplesProblem, NamesWhatIsWrongInOneLine) {
   const TemporaryFolder folder;
   const Drawn d = drawn(true, 5, 4);
-  const std::string good = easy_text(d, true), matrices = moveit_text(d);
+  const std::string good = easy_text(d, true), matrices = moveit_text(d), cv = opencv_text(d);
   const auto replaced = [](std::string text, const std::string& from, const std::string& to) {
     return text.replace(text.find(from), from.size(), to);
   };
@@ -192,6 +232,10 @@ TEST(SamplesProblem, NamesWhatIsWrongInOneLine) {
            {matrices.substr(0, matrices.find("- eff", 10)), "f has 1 whole samples; 3 are needed"},
            {replaced(matrices, "[", "[7, "), "f:1: has 17 numbers; 16 of a 4 x 4 matrix"},
            {replaced(matrices, "[", "[7"), "f:1: is not a rotation and a translation"},
+           {replaced(cv, "t_target2cam", "t_target"), "has no 't_target2cam'"},
+           {replaced(cv, "[ ", "[ 7"), "f:3: is not a rotation; number 1 of R_gripper2base is 3 x 3, row by row"},
+           {replaced(cv, "[ ", "[ 7, "), "R_gripper2base and t_gripper2base number 1 have 10 and 3 numbers; 9 (or 3"},
+           {replaced(opencv_arrays(d), "rows: 4", "rows: 5"), "R_base2gripper has 12 numbers for 5 matrices"},
            {"id,robot.x,robot.qx,robot.qy,robot.qz,robot.qw,pose.x,pose.y,pose.z\n1,0,0,0,0,1,0,0,0\n",
             "has no column 'robot.y'"},
        }) {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "../tasks/fill_plan.hpp"
 #include "posewright/lists/read_poses.hpp"
 #include "posewright/model/whitening.hpp"
 #include "posewright/study/setup.hpp"
@@ -12,6 +11,7 @@
 #include "posewright/support/error.hpp"
 #include "posewright/support/json.hpp"
 #include "posewright/support/table.hpp"
+#include "posewright/tasks/planned_pose.hpp"
 #include "report_scene.hpp"
 
 namespace posewright {

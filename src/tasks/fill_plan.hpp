@@ -3,6 +3,7 @@
 #include "posewright/results/plan.hpp"
 #include "posewright/study/judgement.hpp"
 #include "posewright/study/study.hpp"
+#include "posewright/tasks/planned_pose.hpp"
 
 namespace posewright {
 
@@ -31,17 +32,6 @@ void fill_instruments(Plan& plan, const Study& study, const Configurations& chos
 /// The criterion that a plan is for, with what the outputs must know of it.
 void name_criterion(Plan& plan, const std::string& name);
 
-/// Configuration, actuators, labels and tool pose of q.
-PlannedPose pose_of(const IdentificationModel& model, std::span<const double> q);
-
-/// Every target of q as its station sees it.
-std::vector<TargetSight> sights_of(const LineOfSight& sight, std::span<const double> q);
-TargetSight target_sight(const LineOfSight& sight, const Sight& s, int station);
-
-/// As it is written.
-std::optional<BodyDistance> body_distance(const std::optional<Separation>& found);
-/// Nearest pair of bodies at q; none without collision checks.
-std::optional<BodyDistance> nearest_at(const Cell& cell, std::span<const double> q);
 /// Margins of proposed configurations to the limits in force.
 std::vector<LimitMargin> limit_margins(const Variant& variant);
 /// "within the joint limits less 1.5 to 2 deg": all configurations that are proposed, in words.

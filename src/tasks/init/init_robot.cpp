@@ -102,15 +102,15 @@ double size_of(const DrawnBody& body) { return box_around(body, Eigen::Isometry3
 
 /// Refuses links of another unit than the arm.
 /// @param largest  of the bodies that move; null: there is none
-void require_size(const DrawnBody* largest, const InitRobot& robot, const SerialArmSpec& arm) {
+void require_size(const DrawnBody* largest, const InitRobot& robot, const SerialArmSpec& spec) {
   const double size = largest == nullptr ? robot.reach : size_of(*largest);
   if (size > links_smallest * robot.reach && size < links_largest * robot.reach) return;
   int line = 0;
-  for (const std::vector<LinkGeometry>& links : {read_urdf_links(arm, {}), read_urdf_visuals(arm, {})})
+  for (const std::vector<LinkGeometry>& links : {read_urdf_links(spec, {}), read_urdf_visuals(spec, {})})
     for (const LinkGeometry& link : links)
       if (link.name == largest->name) line = link.line;
   throw InputError(
-      {arm.urdf.string(), line},
+      {spec.urdf.string(), line},
       fmt::format("link '{}' is {:.2g} m large on an arm that reaches {:.2g} m", largest->name, size, robot.reach),
       size > robot.reach ? "a mesh in mm needs scale=\"0.001 0.001 0.001\"" : "a mesh in m needs no scale");
 }

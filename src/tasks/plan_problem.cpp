@@ -10,6 +10,7 @@
 #include "fill_plan.hpp"
 #include "poses_at_risk.hpp"
 #include "posewright/criterion/registry.hpp"
+#include "posewright/model/instrument_choice.hpp"
 #include "posewright/problem/design_keys.hpp"
 #include "posewright/study/expected_error.hpp"
 #include "posewright/study/judgement.hpp"
@@ -174,7 +175,8 @@ class PlanSearch {
 
   Plan assemble(const SearchResult& found) const {
     // Judged from the configurations that will be written, not from anything the search kept.
-    const Configurations chosen = chosen_by(found.design, study_.configurations);
+    const Members members = in_order_of_instruments(found);
+    const Configurations chosen = chosen_by(members.design, study_.configurations);
     const Configurations poses = with_fixed(chosen);
     const Judgement judgement = judge(study_, poses);
     Plan plan;
@@ -193,7 +195,7 @@ class PlanSearch {
       whole->within = proposed_within(*study_.first().workspace, *study_.first().model);
     // References of everything are none of the parameters'.
     if (!study_.first().nuisance_counts) fill_variants(plan, judgement, study_, found.references);
-    fill_poses(plan, study_, chosen, found.design.members, found.without, judgement);
+    fill_poses(plan, study_, chosen, members.design.members, members.without, judgement);
     fill_without_fixed(plan, chosen, found, phi);
     fill_instruments(plan, study_, chosen, *found.measure, phi, found.degree);
     fill_candidates(plan.statistics, study_);
@@ -208,6 +210,27 @@ class PlanSearch {
     // A search that had its say before the signal came is not distinguished: the run was ended.
     plan.interrupted = found.stopped || monitor_.was_interrupted();
     return plan;
+  }
+
+  struct Members {
+    Design design;
+    std::vector<double> without;  ///< of each
+  };
+  /// Poses of one instrument stand together: whoever measures mounts it once.
+  Members in_order_of_instruments(const SearchResult& found) const {
+    Members members{found.design, found.without};
+    const MeasurementSpec& measurement = problem_.measurement;
+    if (instruments_of(measurement) == nullptr) return members;
+    const Configurations chosen = chosen_by(found.design, study_.configurations);
+    std::vector<std::pair<const MeasurementSpec*, std::size_t>> order;
+    for (std::size_t i = 0; i < chosen.count(); ++i)
+      order.emplace_back(&instrument_at(measurement, study_.first().model->coordinates(), chosen[i]), i);
+    std::sort(order.begin(), order.end());  // of one array
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      members.design.members[i] = found.design.members[order[i].second];
+      if (!found.without.empty()) members.without[i] = found.without[order[i].second];
+    }
+    return members;
   }
 
   void warn_of_lost_poses(Plan& plan, const Configurations& poses) const {

@@ -90,8 +90,9 @@ void Sampler::boundary(std::size_t wanted, const Monitor& monitor) {
 
 void Sampler::fill_up(std::size_t count, const Monitor& monitor) {
   if (result_.count() == 0 || result_.count() >= count) return;
+  filling_up_ = true;
   if (has_views_) views(count - result_.count(), monitor);
-  else if (has_ompl_) interior(count - result_.count(), monitor);
+  else if (has_ompl_ || instrument_) interior(count - result_.count(), monitor);
 }
 
 void Sampler::pin(std::size_t i, std::span<double> q) const {
@@ -119,6 +120,7 @@ void Sampler::draw(std::size_t wanted, const Monitor& monitor, std::size_t draws
   const std::size_t limit = wanted * draws_per_candidate;
   std::vector<double> points(batch * d);
   std::vector<int> verdict(batch);
+  share_among_instruments(wanted);
   for (std::size_t first = 0;
        result_.count() < target && first < limit && (result_.drawn == 0 || !monitor.should_stop()); first += batch) {
     for (std::size_t i = 0; i < batch; ++i) generate(first + i, std::span(points).subspan(i * d, d));
@@ -136,18 +138,36 @@ void Sampler::draw(std::size_t wanted, const Monitor& monitor, std::size_t draws
       const std::span<const double> q = std::span(points).subspan(i * d, d);
       if (verdict[i] >= 0) ++rejected_[std::size_t(verdict[i])];
       else if (!is_new(q)) ++rejected_[drawn_before()];
+      else if (!counts(q)) ++rejected_.back();
       else
         result_.values.insert(result_.values.end(), points.begin() + std::ptrdiff_t(i * d),
                               points.begin() + std::ptrdiff_t((i + 1) * d));
     }
     monitor.report({"candidates", double(result_.count()), double(options_.count), {}, {}, {}});
+    std::erase_if(open_, [&](double k) { return still_wanted_[std::size_t(k)] == 0; });
   }
+}
+
+void Sampler::share_among_instruments(std::size_t wanted) {
+  if (!instrument_) return;
+  open_ = workspace_.proposed()[*instrument_].values;
+  const std::size_t each = filling_up_ ? wanted : (wanted + open_.size() - 1) / open_.size();
+  still_wanted_.assign(open_.size(), each);
+}
+
+bool Sampler::counts(std::span<const double> q) {
+  if (!instrument_) return true;
+  std::size_t& wanted = still_wanted_[std::size_t(q[*instrument_])];
+  if (wanted == 0) return false;
+  --wanted;
+  return true;
 }
 
 void Sampler::scale(std::span<double> q) const {
   for (std::size_t k = 0; k < q.size(); ++k) {
     const Coordinate& c = workspace_.proposed()[k];
-    if (c.discrete()) q[k] = c.values[std::min(std::size_t(q[k] * double(c.values.size())), c.values.size() - 1)];
+    const std::vector<double>& values = k == instrument_ && !open_.empty() ? open_ : c.values;
+    if (c.discrete()) q[k] = values[std::min(std::size_t(q[k] * double(values.size())), values.size() - 1)];
     else q[k] = q[k] >= 1.0 ? c.upper : c.lower + q[k] * (c.upper - c.lower);
   }
 }

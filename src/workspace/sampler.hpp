@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <unordered_set>
@@ -23,7 +24,7 @@ class Sampler {
   void views(std::size_t wanted, const Monitor& monitor);
   /// Valid states by one of OMPL's samplers, in runs that depend on (seed, kind, run) alone.
   void valid_states(SamplerKind kind, std::size_t wanted, const Monitor& monitor);
-  /// Draws the missing candidates evenly, or at views.
+  /// Draws the missing candidates evenly, or at views; of any instrument.
   void fill_up(std::size_t count, const Monitor& monitor);
 
   /// Share of even draws that is feasible, by a few.
@@ -45,6 +46,10 @@ class Sampler {
 
   void draw(std::size_t wanted, const Monitor& monitor, std::size_t draws_per_candidate, const Generate& generate,
             const Judge& judge);
+  /// Of a list of instruments each has its part of the candidates, however seldom it sees: sets how many are wanted.
+  void share_among_instruments(std::size_t wanted);
+  /// One candidate less is wanted of its instrument; false: none was.
+  bool counts(std::span<const double> q);
   /// From the unit box to the limits.
   void scale(std::span<double> q) const;
   /// Moves unit coordinates to 0 or 1: all of them for the first draws (every corner once, if they are not too many),
@@ -67,7 +72,10 @@ class Sampler {
   std::vector<std::size_t> bounded_;        // coordinates with ends
   std::unordered_set<std::uint64_t> seen_;  // hashes of accepted configurations
   std::size_t anchors_ = 0;
-  bool has_ompl_ = false, has_views_ = false;
+  std::optional<std::size_t> instrument_;  // coordinate of a list
+  std::vector<std::size_t> still_wanted_;  // of each instrument
+  std::vector<double> open_;               // instruments that more are wanted of
+  bool has_ompl_ = false, has_views_ = false, filling_up_ = false;
 };
 
 }  // namespace posewright

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "posewright/model/instrument_choice.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/parallel.hpp"
 #include "posewright/support/random.hpp"
@@ -37,6 +38,7 @@ Sampler::Sampler(const Workspace& workspace, const SamplingOptions& options)
   result_.dimension = int(workspace.proposed().size());
   for (std::size_t k = 0; k < workspace.proposed().size(); ++k)
     if (const Coordinate& c = workspace.proposed()[k]; !c.periodic && !c.discrete()) bounded_.push_back(k);
+    else if (c.choice() && c.name == instrument_coordinate) instrument_ = k;
   reasons_.push_back(out_of_reach_of_view);
   reasons_.push_back("drawn before");
   reasons_.push_back(passed_over_reason);

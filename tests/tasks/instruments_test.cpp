@@ -86,11 +86,14 @@ Eigen::MatrixXd information_at(const IdentificationModel& model, const std::vect
   return J.transpose() * J;
 }
 
-TEST(InstrumentList, InformationIsTheSumOfThatOfItsInstruments) {
-  const Problem problem = example(mixed_example);
+class InformationOf : public testing::TestWithParam<const char*> {};
+
+TEST_P(InformationOf, AListIsTheSumOfThatOfItsInstruments) {
+  const Problem problem = example(GetParam());
   const std::vector<MeasurementSpec>& instruments = *instruments_of(problem.measurement);
   const auto mixed = make_model(problem);
-  ASSERT_EQ(mixed->coordinates().back().labels, (std::vector<std::string>{"tracker", "camera"}));
+  for (std::size_t k = 0; k < instruments.size(); ++k)
+    EXPECT_EQ(mixed->coordinates().back().labels.at(k), instruments[k].name);
   // Eight readings a row of the board's 96 would make a block as high; six motions and the lens do not.
   EXPECT_LT(mixed->block_rows(every_parameter(*mixed)), 32);
   Random random(3, 1);
@@ -130,6 +133,9 @@ TEST(InstrumentList, InformationIsTheSumOfThatOfItsInstruments) {
   EXPECT_LT((whole - sum).cwiseQuotient(unit * unit.transpose()).cwiseAbs().maxCoeff(), 1e-11);
 }
 
+INSTANTIATE_TEST_SUITE_P(Examples, InformationOf, testing::Values(mixed_example, "instruments/tracker_and_level.yaml"),
+                         [](const auto& file) { return test_name(file.param); });
+
 TEST(InstrumentList, LinearRowsAndFactoredRowsTellTheSame) {
   const auto model = make_model(example(mixed_example));
   const std::vector<int> all = every_parameter(*model);
@@ -160,7 +166,10 @@ TEST(InstrumentList, APlanStatesTheInstrumentOfEveryPoseAndWhatEachGives) {
   std::vector<Eigen::Matrix3d> part(2, Eigen::Matrix3d::Zero());
   std::vector<int> poses(2, 0);
   Linearisation at;
+  double before = 0;
   for (const std::vector<double>& q : configurations_of(planar.problem, plan)) {
+    EXPECT_LE(before, q.back()) << "one instrument after the other";
+    before = q.back();
     ASSERT_TRUE(model->linearise(q, {}, columns.selected, at));
     part[std::size_t(q.back())] += at.G.transpose() * at.covariance.inverse() * at.G;
     ++poses[std::size_t(q.back())];

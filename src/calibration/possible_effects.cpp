@@ -165,12 +165,14 @@ std::vector<PossibleEffects> possible_effects(const IdentificationModel& model, 
   const auto noises = logarithmic(1, largest_noise * worse, noises_tried);
   std::vector<UnmodelledSize> shapes{{0.0, 0.0, 1.0}};
   std::vector<double> effects;
-  if (model.tips() == 0) effects = {0.0};
+  Eigen::MatrixXd twists;
+  double squares = 0;
+  if (model.tips() > 0) twists = residuals.along(UnmodelledEffect(model, {1.0, 1.0, 1.0})).J;
+  for (Eigen::Index c = 0; c < twists.cols(); ++c) squares += c % 6 < 3 ? twists.col(c).squaredNorm() : 0.0;
+  // There is no tip, or angles alone are read.
+  if (!(squares > 0)) effects = {0.0};
   else {
-    const Eigen::MatrixXd twists = residuals.along(UnmodelledEffect(model, {1.0, 1.0, 1.0})).J;
     shapes = shapes_of(twists);
-    double squares = 0;
-    for (Eigen::Index c = 0; c < twists.cols(); ++c) squares += c % 6 < 3 ? twists.col(c).squaredNorm() : 0.0;
     const double unit = 1 / std::sqrt(squares / (3.0 * double(list.size())));
     for (const double size : logarithmic(least_effect, largest_effect * worse, effects_tried))
       effects.push_back(size * unit);

@@ -224,6 +224,8 @@ class ErrorsToExpect::Places {
     said_.places = int(points.size());
     said_.required = variant.problem->design.require.accuracy;
     said_.noise = noise_of_a_pose(readings_.along.leftCols<3>(), readings_.poses.count());
+    // Effects come in multiples of it, and angles alone say nothing of displacements.
+    if (!std::isfinite(said_.noise)) return;
     const auto effect = effect_of(variant, said_);
     unit_ = effect->size().translation;
     said_.length = effect->size().length;
@@ -303,7 +305,7 @@ class ErrorsToExpect::Places {
   Readings readings_;
   std::size_t measured_;
   ExpectedError said_;  // what is the same for any number of poses
-  bool counted_ = false, moves_ = true;
+  bool counted_ = false, moves_ = false;
   double unit_ = 1.0;
   std::vector<CountedSize> sizes_;
   Eigen::MatrixXd F_;

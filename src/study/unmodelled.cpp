@@ -54,6 +54,14 @@ std::vector<Parameter> not_estimated(const Variant& variant, std::vector<int>& i
   return rest;
 }
 
+/// @param rows  along what the effect moves
+void require_displacements(const Variant& variant, const Eigen::Ref<const Eigen::MatrixXd>& rows) {
+  if (rows.isZero(0))
+    throw InputError(variant.problem->at(variant.spec->unmodelled->line),
+                     "an unmodelled effect displaces the tip, and the instrument reads angles alone",
+                     "leave unmodelled out");
+}
+
 double size_by_tolerances(const Variant& variant, const Configurations& sample, int threads) {
   std::vector<int> indices;
   const std::vector<Parameter> rest = not_estimated(variant, indices);
@@ -63,6 +71,7 @@ double size_by_tolerances(const Variant& variant, const Configurations& sample, 
   for (int k = 0; k < 3; ++k) selected.push_back(variant.model->tip_column(0, k));
   const BlockArray blocks = build_blocks(*variant.model, selected, sample, threads);
   const auto Y = blocks.all().rightCols<3>();
+  require_displacements(variant, Y);
   const double noise = noise_of_a_pose(Y, blocks.count());
   if (rest.empty()) return noise;
   Eigen::MatrixXd caused = blocks.all().middleCols(own, Eigen::Index(rest.size()));
@@ -81,6 +90,7 @@ void require_told_apart(const Variant& variant, const Configurations& sample, in
   const EffectFeatures features(variant.effect, effect_places(*variant.effect, sample), most_features);
   const BlockArray blocks = expanded_blocks(variant, features, sample, threads);
   const Eigen::MatrixXd F = blocks.all().leftCols(features.columns());
+  require_displacements(variant, F);
   const Eigen::MatrixXd left = left_beside(blocks.all().rightCols(blocks.columns() - features.columns()), F);
   if (left.squaredNorm() > told_apart * F.squaredNorm()) return;
   throw InputError(variant.problem->at(variant.spec->unmodelled->line),

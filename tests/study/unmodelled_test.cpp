@@ -656,5 +656,25 @@ TEST(UnmodelledEffect, IsRefusedWhereNoTipIsSeen) {
   EXPECT_THROW(planned(problem, options), CannotDo);
 }
 
+TEST(UnmodelledEffect, OfAnglesAloneIsNeitherExpectedNorAccepted) {
+  Problem problem = example("instruments/level.yaml");
+  DesignEdits options;
+  options.edit("candidates", 60);
+  options.edit("method", "exchange");
+  const Plan plan = planned(problem, options);
+  // Effects come in multiples of the noise of a position, which no reading has.
+  EXPECT_FALSE(plan.expected.has_value());
+  EXPECT_EQ(plan_json(plan).find("nan"), std::string::npos);
+  for (const UnmodelledSpec& spec : {UnmodelledSpec{{}, {}, 0.0, 14}, UnmodelledSpec{1e-4, 0.5, 0.0, 14}}) {
+    problem.variants.front().unmodelled = spec;
+    try {
+      planned(problem, options);
+      ADD_FAILURE();
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("level.yaml:14: an unmodelled effect displaces the tip"));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace posewright

@@ -22,6 +22,9 @@ constexpr std::array<const char*, 3> point_axes = {".x", ".y", ".z"};
 // What bends by more than this share of its size is another body, or its points are mixed up.
 constexpr double largest_deformation = 0.05;
 
+/// Component of an orientation, alone or in a list of instruments.
+bool is_turn(const Reading& reading) { return reading.name.find("pose.r") != std::string::npos; }
+
 }  // namespace
 
 MeasuredColumns::MeasuredColumns(const std::string& bytes, const std::string& file, const MeasurementSpec& measurement,
@@ -66,6 +69,10 @@ void MeasuredColumns::find_readings() {
       if (!given(reading)) missing += (missing.empty() ? "" : ", ") + reading.name;
     notes_.push_back("no column for " + missing + ": counted as not read");
   }
+  const auto angles = std::ranges::count_if(model_.readings(), is_turn);
+  if ((angles == 1 || angles == 2) && (by_points || turned()))
+    throw InputError(header(), "has whole orientations, and the instrument reads some of rx, ry, rz",
+                     "pose.rx, …: components of the rotation vector from the nominal orientation");
   if (by_points) notes_.push_back("poses are rigid fits to the photogrammetric points");
 }
 
@@ -194,9 +201,10 @@ Eigen::VectorXd MeasuredColumns::readings(int row) const {
     if (at < 6 && (whole || (turned() && at > 2))) y[i] = all[at];
     else y[i] = value(row, reading.name, reading.unit);
   }
-  // A rotation vector is one reading of three numbers.
+  // A whole rotation vector is one reading of three numbers.
   for (Eigen::Index i = 2; i < count; ++i)
-    if (model_.readings()[std::size_t(i)].name.ends_with(pose_names[5]) && !y.segment<3>(i - 2).allFinite())
+    if (model_.readings()[std::size_t(i)].name.ends_with(pose_names[5]) &&
+        is_turn(model_.readings()[std::size_t(i) - 2]) && !y.segment<3>(i - 2).allFinite())
       y.segment<3>(i - 2).setConstant(not_read);
   return y;
 }

@@ -195,7 +195,13 @@ bool ExplicitModel::do_read(const Point& at, Eigen::VectorXd& y) const {
   static thread_local Twists none;
   Eigen::Isometry3d X;
   if (!tip_->linearise(p.tip, {}, X, none, nullptr)) return false;
-  measurement_->read({X, p.own_correction, p.station}, y);
+  MeasurementModel::Sighting sighting{X, p.own_correction, p.station};
+  Eigen::Isometry3d nominal;
+  if (measurement_->reads_from_nominal()) {
+    if (!tip_->linearise({p.tip.q, {}, p.tip.chosen}, {}, nominal, none, nullptr)) return false;
+    sighting.X_MeasureTipNominal = &nominal;
+  }
+  measurement_->read(sighting, y);
   return true;
 }
 

@@ -5,7 +5,6 @@
 #include "displacement.hpp"
 #include "measure_points.hpp"
 #include "posewright/model/rotation_vector.hpp"
-#include "posewright/support/error.hpp"
 
 namespace posewright {
 namespace {
@@ -43,10 +42,10 @@ PoseModel::PoseModel(const MeasurementSpec& spec)
 }
 
 void PoseModel::read(const Sighting& sighting, Eigen::Ref<Eigen::VectorXd> y) const {
-  if (turns_ != 0 && turns_ != 3)
-    throw CannotDo("measurement: readings of rx, ry, rz mean something together only; measure all three or none");
   const Eigen::Isometry3d X = seen(sighting.X_MeasureTip);
-  const Eigen::Vector3d turn = rotation_vector(X.linear());
+  Eigen::Matrix3d from = Eigen::Matrix3d::Identity();
+  if (reads_from_nominal()) from = seen(*sighting.X_MeasureTipNominal).linear();
+  const Eigen::Vector3d turn = rotation_vector(X.linear() * from.transpose());
   for (Eigen::Index i = 0; i < rows_; ++i) {
     const int c = spec_.components[std::size_t(i)];
     y[i] = c < 3 ? X.translation()[c] : turn[c - 3];

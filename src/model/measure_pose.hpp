@@ -13,7 +13,8 @@ InstrumentView view_of(const PoseMeasurement& pose);
 
 /// Full or partial pose of the tip. Rows: the chosen components of (position of the tip origin in M, rotation as a
 /// spatial rotation vector in M): v + ω × p and ω of a twist. Readings pose.{x,…,rz}: the position and the rotation
-/// vector of the tip's orientation in M. No parameters of its own. With photogrammetry the
+/// vector of the tip's orientation in M; if rx, ry, rz are not all measured, components of the small rotation from the
+/// nominal orientation. No parameters of its own. With photogrammetry the
 /// covariance is that of the rigid fit to the points.
 ///
 /// An instrument on the hand reads the pose of M in the tip, X⁻¹ for the tip's pose X = (R, p): rows −Rᵀ v and −Rᵀ ω.
@@ -22,6 +23,7 @@ class PoseModel : public MeasurementModel {
   explicit PoseModel(const MeasurementSpec& spec);
 
   void read(const Sighting& sighting, Eigen::Ref<Eigen::VectorXd> y) const override;
+  bool reads_from_nominal() const override { return turns_ == 1 || turns_ == 2; }
   void difference(const Eigen::VectorXd& measured, const Eigen::VectorXd& predicted,
                   Eigen::VectorXd& out) const override;
   void shifted(const Eigen::VectorXd& predicted, const Eigen::VectorXd& change, Eigen::VectorXd& out) const override;

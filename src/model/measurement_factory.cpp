@@ -6,6 +6,8 @@
 #include "joint_sensor_model.hpp"
 #include "measure_camera.hpp"
 #include "measure_distance.hpp"
+#include "measure_inclination.hpp"
+#include "measure_plane.hpp"
 #include "measure_points.hpp"
 #include "measure_pose.hpp"
 #include "posewright/model/explicit_model.hpp"
@@ -23,6 +25,12 @@ Measurement model_of(const PointsMeasurement&, const MeasurementSpec& spec) {
 Measurement model_of(const DistanceMeasurement& distance, const MeasurementSpec& spec) {
   if (distance.anchors.empty()) return nullptr;
   return std::make_unique<DistanceModel>(spec);
+}
+Measurement model_of(const PlaneMeasurement&, const MeasurementSpec& spec) {
+  return std::make_unique<PlaneModel>(spec);
+}
+Measurement model_of(const InclinationMeasurement&, const MeasurementSpec& spec) {
+  return std::make_unique<InclinationModel>(spec);
 }
 Measurement model_of(const CameraMeasurement&, const MeasurementSpec& spec) {
   return std::make_unique<CameraModel>(spec);

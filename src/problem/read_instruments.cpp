@@ -1,3 +1,5 @@
+#include <numbers>
+
 #include "sections.hpp"
 
 namespace posewright {
@@ -9,6 +11,9 @@ using yaml::Value;
 
 // Beyond this a block's covariance alone takes megabytes and tells nothing new.
 constexpr int most_anchors = 500;
+
+// Nearer to the vertical an inclination has hardly a direction.
+constexpr double steepest = 89 * std::numbers::pi / 180;
 
 /// {type: isotropic, noise}: one sigma.
 Measured read_isotropic(const Value& value, std::initializer_list<Quantity> quantities) {
@@ -44,6 +49,36 @@ DistanceMeasurement read_distance(const Section& section) {
   if (const Value* per_m = device.find("noise_per_m"))
     distance.sigma_per_m = per_m->number(Quantity::length, Sign::not_negative);
   return distance;
+}
+
+PlaneMeasurement read_plane_distance(const Section& section) {
+  section.allow({"type", "name", "probe", "plane", "range", "device", "repeats", "repeatability", "load"});
+  PlaneMeasurement touched;
+  touched.probe = {"probe", section.at("probe").vector(Quantity::length), section.at("probe").line()};
+  const Section plane(section.at("plane"));
+  plane.allow({"point", "normal", "radius"});
+  touched.point = plane.at("point").vector(Quantity::length);
+  touched.normal = read_direction(plane.at("normal"));
+  touched.radius = plane.at("radius").number(Quantity::length, Sign::positive);
+  const yaml::Range range = read_range(section.at("range"), {Quantity::length});
+  touched.range_lower = range.lower;
+  touched.range_upper = range.upper;
+  touched.sigma = read_isotropic(section.at("device"), {Quantity::length}).value;
+  return touched;
+}
+
+InclinationMeasurement read_inclination(const Section& section) {
+  section.allow({"type", "name", "axes", "rpy", "up", "range", "device", "repeats", "repeatability", "load"});
+  InclinationMeasurement inclination;
+  if (const Value* axes = section.find("axes"))
+    inclination.axes = read_components(*axes, std::span(pose_components).first(3));
+  if (const Value* rpy = section.find("rpy")) inclination.rpy = rpy->vector(Quantity::angle);
+  if (const Value* up = section.find("up")) inclination.up = read_direction(*up);
+  const Value& range = section.at("range");
+  inclination.range = range.number(Quantity::angle, Sign::positive);
+  if (!(inclination.range < steepest)) range.fail("reaches the vertical", "less than 89 deg is needed");
+  inclination.sigma = read_isotropic(section.at("device"), {Quantity::angle}).value;
+  return inclination;
 }
 
 CameraMeasurement read_camera(const Section& section) {

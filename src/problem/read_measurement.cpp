@@ -16,25 +16,6 @@ using yaml::Section;
 using yaml::Sign;
 using yaml::Value;
 
-/// Chosen components as ascending indices into `names`.
-Components read_components(const Value& value, std::span<const std::string_view> names) {
-  const std::string expected = fmt::format("allowed: {}", fmt::join(names, ", "));
-  Components components;
-  for (const Value& item : value.items("a list is expected, " + expected)) {
-    const std::string name = item.text(expected);
-    const auto found = std::find(names.begin(), names.end(), name);
-    if (found == names.end())
-      item.fail("is " + in_quotes(name) + meant_instead(name, {names.begin(), names.end()}), expected);
-    const int index = static_cast<int>(found - names.begin());
-    if (std::find(components.begin(), components.end(), index) != components.end())
-      item.fail("is " + in_quotes(name), "it is already in the list");
-    components.push_back(index);
-  }
-  if (components.empty()) value.fail("is empty", expected);
-  std::sort(components.begin(), components.end());
-  return components;
-}
-
 TargetSpec read_target(std::string name, const Value& value) {
   return {std::move(name), value.vector(Quantity::length), value.line()};
 }
@@ -165,6 +146,8 @@ constexpr InstrumentReader instruments[] = {
     {"points", [](const Section& measurement) -> InstrumentSpec { return read_points(measurement, false); }},
     {"position", [](const Section& measurement) -> InstrumentSpec { return read_points(measurement, true); }},
     {"distance", [](const Section& measurement) -> InstrumentSpec { return read_distance(measurement); }},
+    {"plane", [](const Section& measurement) -> InstrumentSpec { return read_plane_distance(measurement); }},
+    {"inclination", [](const Section& measurement) -> InstrumentSpec { return read_inclination(measurement); }},
     {"camera", [](const Section& measurement) -> InstrumentSpec { return read_camera(measurement); }},
     {"joints", [](const Section& measurement) -> InstrumentSpec { return read_joint_sensors(measurement); }},
 };
@@ -194,6 +177,24 @@ Repeatability read_repeatability(const Value& value, const std::string& type) {
 }
 
 }  // namespace
+
+Components read_components(const Value& value, std::span<const std::string_view> names) {
+  const std::string expected = fmt::format("allowed: {}", fmt::join(names, ", "));
+  Components components;
+  for (const Value& item : value.items("a list is expected, " + expected)) {
+    const std::string name = item.text(expected);
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end())
+      item.fail("is " + in_quotes(name) + meant_instead(name, {names.begin(), names.end()}), expected);
+    const int index = static_cast<int>(found - names.begin());
+    if (std::find(components.begin(), components.end(), index) != components.end())
+      item.fail("is " + in_quotes(name), "it is already in the list");
+    components.push_back(index);
+  }
+  if (components.empty()) value.fail("is empty", expected);
+  std::sort(components.begin(), components.end());
+  return components;
+}
 
 std::vector<StationSpec>* stations_of(MeasurementSpec& measurement) {
   return std::visit(
@@ -250,7 +251,7 @@ void require_fits_list(const Section& section, MeasurementSpec& instrument) {
   if (std::holds_alternative<JointsMeasurement>(instrument.instrument) ||
       (distance != nullptr && distance->anchors.empty()))
     section.at("type").fail("does not read where the tip is, and stands in a list of instruments",
-                            "allowed there: pose, points, position, camera, distance with anchors");
+                            "allowed there: pose, points, position, plane, inclination, camera, distance with anchors");
   if (instrument.loaded_minus_unloaded)
     section.at("load").fail("is loaded_minus_unloaded in a list of instruments", "allowed there: absolute");
   if (const std::vector<StationSpec>* stations = stations_of(instrument); stations != nullptr && stations->size() > 1)

@@ -3,6 +3,7 @@
 #include <array>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,9 +23,13 @@ std::string expanded_xacro(const SerialArmSpec& arm, const yaml::Value& urdf);
 
 MeasurementSpec read_measurement(const yaml::Value& value);
 DistanceMeasurement read_distance(const yaml::Section& section);
+PlaneMeasurement read_plane_distance(const yaml::Section& section);
+InclinationMeasurement read_inclination(const yaml::Section& section);
 CameraMeasurement read_camera(const yaml::Section& section);
 JointsMeasurement read_joint_sensors(const yaml::Section& section);
 
+/// Chosen components as ascending indices into `names`.
+Components read_components(const yaml::Value& value, std::span<const std::string_view> names);
 /// {NAME: [x, y, z]}, at least one.
 std::vector<TargetSpec> read_targets(const yaml::Value& value);
 

@@ -169,6 +169,27 @@ TEST(Gradient, OfRandomChainsSeenByATrackerWithEveryKindOfNoise) {
   }
 }
 
+TEST(Gradient, OfATouchedPlaneAndOfAnInclinometer) {
+  PlaneMeasurement plane;
+  plane.probe = {"probe", {0.1, 0.2, -0.3}, 0};
+  plane.normal = Eigen::Vector3d(0.3, -0.5, 0.8).normalized();
+  plane.radius = 100, plane.range_lower = -100, plane.range_upper = 100, plane.sigma = 1e-5;
+  InclinationMeasurement inclination;
+  inclination.rpy = {0.4, -0.3, 1.2};
+  inclination.range = 1.4, inclination.sigma = 1e-4;
+  for (const InstrumentSpec& instrument : {InstrumentSpec(plane), InstrumentSpec(inclination)}) {
+    MeasurementSpec spec;
+    spec.instrument = instrument;
+    ExplicitModel model(std::make_unique<SerialChain>(random_chain(31, true, false)), make_measurement(spec),
+                        {2e-5, 4e-5, 0});
+    EXPECT_LT(worst_difference(model), tolerance) << instrument.index();
+    Random random(4, 9);
+    for (std::size_t i = 0; i < model.parameters().size(); ++i)
+      model.set_nominal(int(i), model.parameters()[i].nominal + random.uniform(-0.2, 0.2));
+    EXPECT_LT(worst_difference(model), tolerance) << instrument.index();
+  }
+}
+
 TEST(Gradient, OfADenavitHartenbergChainWithNoisyEncoders) {
   ChainDescription chain = random_chain(7, true, false);
   for (double& sigma : chain.encoder_noise) sigma = 2e-5;

@@ -166,6 +166,97 @@ TEST(Distance, NoiseGrowsWithTheDistanceAndTheRangeIsKept) {
   EXPECT_FALSE(instrument->sees({X, {}, 0}));
 }
 
+TEST(Plane, RowsEqualAutomaticDifferentiation) {
+  const Arm arm;
+  PlaneMeasurement plane;
+  plane.probe = {"probe", {0.1, 0.2, -0.3}, 0};
+  plane.point = {0.4, -0.2, 0.7};
+  plane.normal = Eigen::Vector3d(0.3, -0.5, 0.8).normalized();
+  plane.radius = 100, plane.range_lower = -100, plane.range_upper = 100, plane.sigma = 1e-5;
+  const ExplicitModel model = arm.with(spec_of(plane));
+  // x is the axis most across the normal.
+  const Eigen::Vector3d v = plane.normal.cross(Eigen::Vector3d::UnitX()).normalized(), u = v.cross(plane.normal);
+  const auto oracle = [&](const std::vector<double>& q, const std::vector<Jet>& d) {
+    const Jet* own = arm.own(d);
+    Vector n = plane.normal.cast<Jet>() + own[4] * u.cast<Jet>() + own[5] * v.cast<Jet>();
+    n = (n / sqrt(n.dot(n))).eval();
+    const Vector from = arm.tip(q.data(), d) * moved(plane.probe.position, own) - plane.point.cast<Jet>();
+    return std::vector<Jet>{n.dot(from) - own[3]};
+  };
+  for (const double size : {0.0, 1.0, 10.0}) EXPECT_LT(worst_model_error(model, 1000, size, 3, oracle), 1e-9);
+}
+
+TEST(Plane, IsReachedWithinItsRangeAndItsRadius) {
+  PlaneMeasurement plane;
+  plane.probe = {"probe", {0, 0, 0.1}, 0};
+  plane.point = {1, 0, 0.5};
+  plane.radius = 0.2, plane.range_lower = -1e-3, plane.range_upper = 2e-3, plane.sigma = 1e-5;
+  const auto instrument = make_measurement(spec_of(plane));
+  const auto sees = [&](double x, double above) {
+    const Eigen::Isometry3d X(Eigen::Translation3d(x, 0, 0.4 + above));
+    return instrument->sees({X, {}, 0});
+  };
+  EXPECT_TRUE(sees(1.19, 1.9e-3));
+  EXPECT_FALSE(sees(1.21, 1.9e-3));
+  EXPECT_FALSE(sees(1.19, 2.1e-3));
+  EXPECT_FALSE(sees(1.19, -1.1e-3));
+}
+
+TEST(Inclination, RowsEqualAutomaticDifferentiation) {
+  const Arm arm;
+  InclinationMeasurement inclination;
+  inclination.axes = {0, 2};
+  inclination.rpy = {0.4, -0.3, 1.2};
+  inclination.up = Eigen::Vector3d(0.1, -0.2, 1).normalized();
+  inclination.range = 1.5, inclination.sigma = 1e-4;
+  const ExplicitModel model = arm.with(spec_of(inclination));
+  const Eigen::Matrix3d R_TipSensor = at({Eigen::Vector3d::Zero(), inclination.rpy}).linear();
+  const auto oracle = [&](const std::vector<double>& q, const std::vector<Jet>& d) {
+    const Frame<Jet> tip = tip_pose<Jet>(arm.chain, arm.layout, q.data(), d.data());
+    std::vector<Jet> rows;
+    for (const int axis : inclination.axes) {
+      const Vector s = tip.R * R_TipSensor.col(axis).cast<Jet>();
+      rows.push_back(asin(s.dot(inclination.up.cast<Jet>())));
+    }
+    return rows;
+  };
+  for (const double size : {0.0, 1.0, 10.0}) EXPECT_LT(worst_model_error(model, 1000, size, 4, oracle), 1e-9);
+}
+
+/// One or two angles: fixed and on the hand, rows at the nominal parameters are those of the small rotation from the
+/// nominal orientation.
+TEST(Pose, SomeOfItsAnglesAreThoseOfTheSmallRotationFromTheNominalOrientation) {
+  const Arm arm;
+  for (const bool on_hand : {false, true}) {
+    PoseMeasurement pose;
+    pose.covariance.setIdentity();
+    pose.components = {2, 3, 4};
+    pose.on_hand = on_hand;
+    const ExplicitModel model = arm.with(spec_of(pose));
+    const auto oracle = [&](const std::vector<double>& q, const std::vector<Jet>& d) {
+      const auto seen = [&](const std::vector<Jet>& at) {
+        Frame<Jet> tip = tip_pose<Jet>(arm.chain, arm.layout, q.data(), at.data());
+        if (on_hand) tip = {tip.R.transpose(), -(tip.R.transpose() * tip.p)};
+        return tip;
+      };
+      const Frame<Jet> now = seen(d);
+      const Eigen::Matrix<Jet, 3, 3> turn = now.R * seen(std::vector<Jet>(d.size(), Jet(0.0))).R.transpose();
+      // Of a small rotation the skew part is the rotation vector.
+      return std::vector<Jet>{now.p[2], 0.5 * (turn(2, 1) - turn(1, 2)), 0.5 * (turn(0, 2) - turn(2, 0))};
+    };
+    EXPECT_LT(worst_model_error(model, 1000, 0.0, 5, oracle), 1e-9) << on_hand;
+    // Readings too, for corrections whose squares are under rounding's reach.
+    Random random(8, 1);
+    const std::vector<double> q = random_configuration(model.coordinates(), random);
+    std::vector<double> correction(model.parameters().size());
+    for (double& c : correction) c = 1e-6 * random.uniform(-1, 1);
+    Eigen::VectorXd y;
+    ASSERT_TRUE(model.read(q, correction, y));
+    const std::vector<Jet> expected = oracle(q, {correction.begin(), correction.end()});
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(y[i], expected[std::size_t(i)].a, 1e-15) << i;
+  }
+}
+
 TEST(DistancePair, RowsEqualAutomaticDifferentiationAndTheBaseHasNoEffect) {
   const Arm arm;
   DistanceMeasurement distance;

@@ -69,7 +69,7 @@ class Experiment:
         self.nominal, self.stands, self.nominal_tips = dict(self.robot.nominal), dict(self.robot.stands), {}
         self.add_instrument()
         # What targets or a mounted board or camera say of the tip's frame is not said twice: there the tool has no parameters.
-        free = [name for name in self.nominal if self.measurement["type"] == "pose" or not name.startswith("tool.")]
+        free = [name for name in self.nominal if self.measurement["type"] in ("pose", "inclination") or not name.startswith("tool.")]
         for pattern, value in variant.get("nominal", {}).items():
             for name in matching(free, self.own_names.get(pattern, pattern)):
                 self.nominal[name] = si(value) - self.stands.get(name, 0.0)

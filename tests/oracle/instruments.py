@@ -127,6 +127,46 @@ class Anchors(Targets):
         return distance_noise(self.device, self.read(X, values, station, X))
 
 
+class Plane:
+    """Distance of a probe from a plane along its normal, which tilts by u and v."""
+
+    def __init__(self, measurement):
+        plane, self.device = measurement["plane"], measurement["device"]
+        self.point, normal = vector(plane["point"]), np.array(plane["normal"], float)
+        self.normal, self.probe = normal / np.linalg.norm(normal), vector(measurement["probe"])
+        across = np.eye(3)[np.argmin(np.abs(self.normal))]
+        self.v = np.cross(self.normal, across) / np.linalg.norm(np.cross(self.normal, across))
+        self.u = np.cross(self.v, self.normal)
+        names = [f"target.probe.{axis}" for axis in "xyz"]
+        self.nominal = dict.fromkeys([*names, "plane.offset", "plane.u", "plane.v"], 0.0)
+        self.stands = dict(zip(names, self.probe))
+
+    def read(self, X, values, station, seen_from):
+        normal = self.normal + values["plane.u"] * self.u + values["plane.v"] * self.v
+        place = point(X, self.probe + [values[f"target.probe.{axis}"] for axis in "xyz"])
+        return np.array([normal @ (place - self.point) / np.linalg.norm(normal) - values["plane.offset"]])
+
+    def noise(self, X, values, station):
+        return np.array([[si(self.device["noise"])**2]])
+
+
+class Inclination:
+    """Angles between axes of a level on the tip and the horizontal plane."""
+
+    def __init__(self, measurement):
+        self.device, self.nominal, self.stands = measurement["device"], {}, {}
+        self.axes = ["xyz".index(axis) for axis in "xyz" if axis in measurement.get("axes", "xy")]
+        self.turned = placement({"rpy": measurement.get("rpy", [0, 0, 0])})[:3, :3]
+        up = np.array(measurement.get("up", [0, 0, 1]), float)
+        self.up = up / np.linalg.norm(up)
+
+    def read(self, X, values, station, seen_from):
+        return np.arcsin(self.up @ X[:3, :3] @ self.turned)[self.axes]
+
+    def noise(self, X, values, station):
+        return si(self.device["noise"])**2 * np.eye(len(self.axes))
+
+
 def distance_noise(device, distances):
     return np.diag((si(device["noise"]) + si(device.get("noise_per_m", 0)) * distances)**2)
 
@@ -187,4 +227,4 @@ def instrument_of(measurement):
         return Points(measurement)
     if kind == "distance":
         return Anchors(measurement)
-    return {"pose": Pose, "camera": Camera}[kind](measurement)
+    return {"pose": Pose, "plane": Plane, "inclination": Inclination, "camera": Camera}[kind](measurement)

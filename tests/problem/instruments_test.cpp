@@ -128,6 +128,20 @@ const Bad bad_instruments[] = {
      "{type: camera, mount: hand, camera: {focal: [9, 9], centre: [1, 1], size: [9, 9], distortion: [0, 0]}, board: "
      "{rows: 3, columns: 3, spacing: 1}, device: {type: isotropic, noise: 0.2}}",
      "expected 5 numbers k1, k2, p1, p2, k3"},
+    {"PlaneWithoutARadius",
+     "{type: plane, probe: [0, 0, 0], plane: {point: [0, 0, 0], normal: [0, 0, 1]}, range: [0, 1], device: {type: "
+     "isotropic, noise: 1 um}}",
+     "measurement.plane has no key 'radius'"},
+    {"PlaneWithoutANormal",
+     "{type: plane, probe: [0, 0, 0], plane: {point: [0, 0, 0], normal: [0, 0, 0], radius: 1}, range: [0, 1], device: "
+     "{type: isotropic, noise: 1 um}}",
+     "measurement.plane.normal is zero; a direction is needed"},
+    {"LevelThatReachesTheVertical", "{type: inclination, range: 90 deg, device: {type: isotropic, noise: 1 mrad}}",
+     "measurement.range reaches the vertical; less than 89 deg is needed"},
+    {"LevelOfAnUnknownAxis", "{type: inclination, axes: [w], range: 30 deg, device: {type: isotropic, noise: 1 mrad}}",
+     "is 'w'"},
+    {"LevelInMillimetres", "{type: inclination, range: 30 deg, device: {type: isotropic, noise: 1 mm}}",
+     "has the wrong unit 'mm'"},
     {"CameraOnTheMoon", "{type: camera, mount: moon, camera: {}, board: {}, device: {type: isotropic, noise: 0.2}}",
      "is 'moon'; allowed: hand, fixed"},
     {"BoardIsALine",

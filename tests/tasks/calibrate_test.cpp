@@ -171,6 +171,18 @@ TEST(MeasuredData, ActuatorsQuaternionsAndPhotogrammetricPointsStandForPoses) {
       EXPECT_LT(off.norm(), 1e-12);
     }
   }
+  // Of an instrument that reads two angles they count from the nominal orientation: whole ones are another thing.
+  Problem part = pose.problem;
+  std::get<PoseMeasurement>(part.measurement.instrument).components = {2, 3, 4};
+  const auto two_angles = make_model(part);
+  for (const std::string& form : {turned, seen}) {
+    try {
+      read_measured_data(pose.write(form), part, *two_angles);
+      ADD_FAILURE();
+    } catch (const InputError& error) {
+      EXPECT_THAT(std::string(error.what()), testing::HasSubstr("whole orientations"));
+    }
+  }
 }
 
 TEST(MeasuredData, PointsThatFitNoRigidBodyAreRefusedWithTheirLine) {

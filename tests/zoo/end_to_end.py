@@ -16,7 +16,7 @@ import time
 import numpy as np
 
 PROGRAM = pathlib.Path(sys.argv[1]).resolve()
-SAMPLE = ["lift_arm/points", "scara/pose", "mixed_4/tracker"]
+SAMPLE = ["lift_arm/points", "scara/pose", "mixed_4/tracker", "arm_6/plane", "arm_6/level"]
 TURN, SLIDE = "revolute", "prismatic"
 TARGETS = {"P1": [0.06, 0.01, 0.03], "P2": [-0.04, 0.07, 0.05], "P3": [0.01, -0.06, 0.09]}
 
@@ -79,6 +79,7 @@ class Arm:
     def __init__(self, joints):
         self.joints, self.moving = joints, coordinates(joints)
         self.names, self.ranges = [f"j{k}" for k in self.moving], [joints[k]["range"] for k in self.moving]
+        self.right = [[0.0] * 7 for _ in joints]
 
     def off(self, random):
         return [[*(2e-4 * random.normal(size=3)), *(3e-4 * random.normal(size=3)), (1e-3 if j["of"] == TURN else 3e-4) * random.normal()] for j in self.joints]
@@ -99,6 +100,7 @@ class Platform:
 
     A kind says `nominal` and `spread` (1σ) of its legs' values, what its loops miss (`loops`: platform, actuators, values → m),
     and where the platform's frame is (`frame`)."""
+    right = 0.0
 
     def off(self, random):
         return self.spread * random.normal(size=self.nominal.shape)
@@ -204,13 +206,13 @@ def urdf(joints):
 # ---- instruments: their part of the problem file, and what they read of a tip
 
 def points(device, noise):
-    def read(T, random, moved):
+    def read(T, random, moved, nominal):
         return {f"{name}.{axis}": value for name, p in TARGETS.items() for axis, value in zip("xyz", (moved @ T @ [*p, 1])[:3] + noise * random.normal(size=3))}
     return f"measurement: {{type: points, targets: {json.dumps(TARGETS)}, device: {device}}}", "target.*", read
 
 
 def pose(position, rotation):
-    def read(T, random, moved):
+    def read(T, random, moved, nominal):
         X = moved @ T
         R = turn(*unit(rotation * random.normal(size=3))) @ X[:3, :3]
         numbers = [*(X[:3, 3] + position * random.normal(size=3)), *rotation_vector(R)]
@@ -218,12 +220,42 @@ def pose(position, rotation):
     return f'measurement: {{type: pose, device: {{type: isotropic, noise: {{position: {position}, rotation: {rotation}}}}}}}', "tool.*", read
 
 
+def part_of_pose(position, rotation):
+    """A height and two angles, as three gauges under a plate read them: the small rotation from where the hand should be."""
+    def read(T, random, moved, nominal):
+        X = moved @ T
+        turned = rotation_vector(X[:3, :3] @ nominal[:3, :3].T)
+        return {"pose.z": X[2, 3] + position * random.normal(), **{f"pose.r{axis}": turned[k] + rotation * random.normal() for k, axis in enumerate("xy")}}
+    noise = f"{{position: {position}, rotation: {rotation}}}"
+    return f"measurement: {{type: pose, components: [z, rx, ry], device: {{type: isotropic, noise: {noise}}}}}", "tool.*", read
+
+
+def plane(noise):
+    """A laser on the hand, whatever its direction, as if the plate were as large as the cell."""
+    probe, point, normal = [0.05, 0.02, 0.1], [0.5, 0.2, -0.3], unit(np.array([0.2, -0.1, 1.0]))[0]
+
+    def read(T, random, moved, nominal):
+        return {"plane.distance": normal @ ((moved @ T @ [*probe, 1])[:3] - point) + noise * random.normal()}
+    place = f"{{point: {point}, normal: {normal.tolist()}, radius: 20}}"
+    return f"measurement: {{type: plane, probe: {probe}, plane: {place}, range: [-20, 20], device: {{type: isotropic, noise: {noise}}}}}", 'target.*", "plane.*', read
+
+
+def level(noise):
+    """A level that reads up to 80 degrees."""
+    def read(T, random, moved, nominal):
+        tilts = np.arcsin((moved @ T)[2, :2])
+        if np.abs(tilts).max() > np.radians(80):
+            return None
+        return {f"inclination.{axis}": tilt + noise * random.normal() for axis, tilt in zip("xy", tilts)}
+    return f"measurement: {{type: inclination, range: 80 deg, device: {{type: isotropic, noise: {noise}}}}}", "tool.*", read
+
+
 def camera(noise):
     """A camera four metres away sees a board on the hand from any side, as if it were of glass."""
     at, rpy, focal, centre, spacing = (4, 0, 0.5), (-np.pi / 2, 0, np.pi / 2), 1500, (1280, 1024), 0.06
     points = np.array([[c * spacing, r * spacing, 0, 1] for r in range(3) for c in range(4)])
 
-    def read(T, random, moved):
+    def read(T, random, moved, nominal):
         p = np.linalg.inv(placed(at, rpy)) @ moved @ T @ points.T
         pixels = focal * p[:2] / p[2] + np.array([centre]).T + noise * random.normal(size=(2, len(points)))
         return {f"point_{i + 1}.{axis}": pixels[k, i] for i in range(len(points)) for k, axis in enumerate("uv")}
@@ -252,6 +284,9 @@ INSTRUMENTS = {
     "tracker": points("{type: laser_tracker, noise: {range: 20 um, transverse: 20 um}, stations: {A: [4, 0.5, 0.5]}}", 20e-6),
     "pose": pose(50e-6, 1e-4),
     "camera": camera(0.1),
+    "part_of_pose": part_of_pose(30e-6, 1e-4),
+    "plane": plane(20e-6),
+    "level": level(1e-4),
 }
 
 
@@ -267,9 +302,12 @@ class Way:
         self.robot = ROBOTS[robot](self.random)
         self.measurement, self.carried, self.read = INSTRUMENTS[instrument]
         self.tracker = instrument == "tracker"
+        # One or two readings a pose tell less, and of a parallel robot too little without tolerances.
+        self.few = instrument in ("plane", "level")
+        self.poses = 60 if self.few else 30
         self.arm = isinstance(self.robot, Arm)
         # A camera shows how it is turned towards the one axis; other instruments show nothing but where they stand.
-        self.alone = len(self.robot.names) == 1 and instrument != "camera"
+        self.alone = len(self.robot.names) == 1 and instrument != "camera" or (robot, instrument) == ("delta", "level")
 
     def run(self, *words, codes=(0,)):
         done = subprocess.run([PROGRAM, *map(str, words)], cwd=self.folder, capture_output=True, text=True, timeout=600)
@@ -305,7 +343,7 @@ class Way:
         workspace = ["stations: {among: {A: [4, 0.5, 0.5], B: [2, 3, 1]}}"] * self.tracker + self.robot.workspace
         return (f"posewright: 1\n{self.robot.text}\n{self.measurement}\n" + (f"workspace: {{{', '.join(workspace)}}}\n" if workspace else "")
                 + f'variants:\n  geometric: {{parameters: auto, nuisance: ["base.*", "{self.carried}"]}}\n  zeros: {{parameters: ["{self.robot.zeros}"], nuisance: ["base.*", "{self.carried}"]}}\n'
-                "design: {poses: 30, candidates: 150, restarts: 1, method: exchange, test_poses: {random: 20}}\n")
+                f"design: {{poses: {self.poses}, candidates: 150, restarts: 1, method: exchange, test_poses: {{random: 20}}}}\n")
 
     def before(self):
         self.run("route", "plan.json", "--force")
@@ -335,7 +373,9 @@ class Way:
         rows = []
         for i, q in enumerate(places):
             T = self.robot.tip(q, error)
-            rows.append({"id": i + 1, **dict(zip(names, q)), **self.read(T, self.random, station @ moved), "use": "fit" if i < fit else "validate"})
+            read = self.read(T, self.random, station @ moved, self.robot.tip(q, self.robot.right))
+            if read is not None:
+                rows.append({"id": i + 1, **dict(zip(names, q)), **read, "use": "fit" if i < fit else "validate"})
         lines = [",".join(rows[0])] + [",".join(repr(float(v)) if not isinstance(v, (int, str)) else str(v) for v in row.values()) for row in rows]
         (self.folder / "measured.csv").write_text("\n".join(lines) + "\n")
 
@@ -343,7 +383,7 @@ class Way:
         result = json.loads(self.run("calibrate", "problem.yaml", "measured.csv", "-o", "found.yaml", *(["--urdf", "found.urdf"] if self.arm else []), "--json").stdout)
         (self.folder / "calibration.json").write_text(json.dumps(result))
         for words in (("--no-prior",), ("--weights", "ols"), ("--weights", "robust"), ("--in-steps", "--profile", "none")):
-            self.run("calibrate", "problem.yaml", "measured.csv", *words)
+            self.run("calibrate", "problem.yaml", "measured.csv", *words, codes=(0, 1) if self.few and words == ("--no-prior",) else (0,))
         self.page("calibration.json")
         return self.judge(result)
 

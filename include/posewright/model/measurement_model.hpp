@@ -44,6 +44,7 @@ class MeasurementModel {
     const Eigen::Isometry3d& X_MeasureTip;
     std::span<const double> correction;
     int station = 0;
+    const Eigen::Isometry3d* X_MeasureTipNominal = nullptr;  ///< there of readings by reads_from_nominal() alone
   };
 
   /// Derivatives of a number f by the results of one sighting: pull_back() takes them to the tip's pose.
@@ -70,6 +71,8 @@ class MeasurementModel {
   const std::vector<Reading>& readings() const { return readings_; }
   /// The readings of one measurement, without noise; `y` has size rows().
   virtual void read(const Sighting& sighting, Eigen::Ref<Eigen::VectorXd> y) const = 0;
+  /// True if readings count from the tip's nominal pose at the same configuration.
+  virtual bool reads_from_nominal() const { return false; }
   /// Measured less predicted as the rows count it (IdentificationModel::difference).
   virtual void difference(const Eigen::VectorXd& measured, const Eigen::VectorXd& predicted,
                           Eigen::VectorXd& out) const;

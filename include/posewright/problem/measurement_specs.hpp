@@ -67,6 +67,25 @@ struct DistanceMeasurement {
   double range_lower = 0.0, range_upper = 0;  ///< m, range of the instrument; upper 0: no limit
 };
 
+/// Distance of a probe on the tip from a plane, along its normal; a touch reads zero.
+struct PlaneMeasurement {
+  TargetSpec probe;                                   ///< tip frame
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();    ///< of the plane, measurement frame, m
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< of length 1, measurement frame
+  double radius = 0.0;                                ///< m, how far from the point the plane reaches
+  double range_lower = 0.0, range_upper = 0.0;        ///< m
+  double sigma = 0.0;                                 ///< m
+};
+
+/// Inclinometer on the tip: angles between its axes and the horizontal plane.
+struct InclinationMeasurement {
+  Components axes{0, 1};                          ///< of the sensor
+  Eigen::Vector3d rpy = Eigen::Vector3d::Zero();  ///< of the sensor in the tip frame, rad
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  ///< of length 1, measurement frame
+  double range = 0.0;                             ///< rad, either way
+  double sigma = 0.0;                             ///< rad
+};
+
 /// Pinhole camera with radial and tangential distortion (k1, k2, p1, p2, k3) and a board of known points.
 struct CameraMeasurement {
   double fx = 0, fy = 0, cx = 0, cy = 0;  ///< px
@@ -92,8 +111,8 @@ struct InstrumentList {
   std::vector<MeasurementSpec> instruments;  ///< at least one, no two of a name
 };
 
-using InstrumentSpec = std::variant<PoseMeasurement, PointsMeasurement, DistanceMeasurement, CameraMeasurement,
-                                    JointsMeasurement, InstrumentList>;
+using InstrumentSpec = std::variant<PoseMeasurement, PointsMeasurement, DistanceMeasurement, PlaneMeasurement,
+                                    InclinationMeasurement, CameraMeasurement, JointsMeasurement, InstrumentList>;
 
 /// Repeatability, 1σ: a random displacement at every visit that averaging does not reduce. One displacement of
 /// the tip, common to all that is read during the visit.

@@ -1,0 +1,113 @@
+#include "measure_plane.hpp"
+
+namespace posewright {
+namespace {
+
+constexpr double probe_tolerance = 1e-3;    // m
+constexpr double offset_tolerance = 10e-3;  // m, of what was placed by hand
+constexpr double tilt_tolerance = 0.0175;   // rad
+enum Own { probe_x, offset = 3, tilt_u, tilt_v };
+
+}  // namespace
+
+InstrumentView view_of(const PlaneMeasurement& plane) {
+  InstrumentView view;
+  view.targets = {plane.probe};
+  return view;
+}
+
+PlaneModel::PlaneModel(const MeasurementSpec& spec)
+    : spec_(std::get<PlaneMeasurement>(spec.instrument)), repeats_(spec.repeats) {
+  rows_ = 1;
+  rows_per_target_ = 1;
+  replaces_tool_ = true;
+  unseen_reason_ = "the probe is too far from the plane or beside it";
+  readings_ = {{"plane.distance", "m"}};
+  Eigen::Index across = 0;
+  spec_.normal.cwiseAbs().minCoeff(&across);
+  in_plane_.col(0) = (Eigen::Vector3d::Unit(across) - spec_.normal[across] * spec_.normal).normalized();
+  in_plane_.col(1) = spec_.normal.cross(in_plane_.col(0));
+  for (int k = 0; k < 3; ++k)
+    parameters_.push_back(
+        {"target." + spec_.probe.name + "." + "xyz"[k], "m", spec_.probe.position[k], probe_tolerance, Role::interest});
+  parameters_.push_back({"plane.offset", "m", 0.0, offset_tolerance, Role::interest});
+  parameters_.push_back({"plane.u", "rad", 0.0, tilt_tolerance, Role::interest});
+  parameters_.push_back({"plane.v", "rad", 0.0, tilt_tolerance, Role::interest});
+  // Where the plane is comes first: nobody knows it, and the place of the robot's base says the same.
+  for (int i = 0; i < int(parameters_.size()); ++i) preferences_.push_back({i, i < offset ? 1 : 0});
+}
+
+PlaneModel::Touch PlaneModel::touch(const Sighting& sighting) const {
+  Eigen::Vector3d p_TipProbe = spec_.probe.position;
+  Touch touch;
+  touch.tilted = spec_.normal;
+  double shift = 0.0;
+  if (!sighting.correction.empty()) {
+    p_TipProbe += Eigen::Map<const Eigen::Vector3d>(sighting.correction.data() + probe_x);
+    shift = sighting.correction[offset];
+    touch.tilted += in_plane_ * Eigen::Map<const Eigen::Vector2d>(sighting.correction.data() + tilt_u);
+  }
+  touch.normal = touch.tilted.normalized();
+  touch.probe = sighting.X_MeasureTip * p_TipProbe;
+  touch.from = touch.probe - spec_.point;
+  const double above = touch.normal.dot(touch.from);
+  touch.distance = above - shift;
+  touch.beside = (touch.from - above * touch.normal).norm();
+  return touch;
+}
+
+void PlaneModel::read(const Sighting& sighting, Eigen::Ref<Eigen::VectorXd> y) const {
+  y[0] = touch(sighting).distance;
+}
+
+void PlaneModel::rows_of_twists(const Sighting& sighting, const Eigen::Ref<const Twists>& twists,
+                                Eigen::Ref<Eigen::MatrixXd> rows) const {
+  const Touch at = touch(sighting);
+  Twist along;
+  along << at.normal, at.probe.cross(at.normal);
+  rows.row(0) = along.transpose() * twists;
+}
+
+void PlaneModel::own_column(const Sighting& sighting, int index, Eigen::Ref<Eigen::VectorXd> column) const {
+  const Touch at = touch(sighting);
+  if (index < offset) column[0] = at.normal.dot(sighting.X_MeasureTip.linear().col(index));
+  else if (index == offset) column[0] = -1.0;
+  else column[0] = (at.from - at.normal.dot(at.from) * at.normal).dot(in_plane_.col(index - tilt_u)) / at.tilted.norm();
+}
+
+void PlaneModel::covariance(const Sighting&, Eigen::Ref<Eigen::MatrixXd> covariance) const {
+  covariance(0, 0) = spec_.sigma * spec_.sigma / repeats_;
+}
+
+/// The row is (n, p × n), the probe's columns Rᵀn, a tilt's Pe/‖·‖ with P across n.
+Twist PlaneModel::pull_back(const Sighting& sighting, const Adjoint& f) const {
+  const Touch at = touch(sighting);
+  const Twist row = f.twist_rows.row(0).transpose();
+  Eigen::Vector3d by_point = at.normal.cross(Eigen::Vector3d(row.tail<3>())), by_turn = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < f.own.size(); ++i) {
+    const double slope = f.own_columns(0, Eigen::Index(i));
+    if (f.own[i] < offset) {
+      by_turn += slope * Eigen::Vector3d(sighting.X_MeasureTip.linear().col(f.own[i])).cross(at.normal);
+    } else if (f.own[i] > offset) {
+      const Eigen::Vector3d e = in_plane_.col(f.own[i] - tilt_u);
+      by_point += slope / at.tilted.norm() * (e - at.normal.dot(e) * at.normal);
+    }
+  }
+  return change_by_motion(at.probe, by_point, by_turn);
+}
+
+bool PlaneModel::sees(const Sighting& sighting) const {
+  const Touch at = touch(sighting);
+  return at.distance >= spec_.range_lower && at.distance <= spec_.range_upper && at.beside <= spec_.radius;
+}
+
+void PlaneModel::margins_at(const Sighting& sighting, std::span<double> out) const {
+  const Touch at = touch(sighting);
+  const double range = spec_.range_upper - spec_.range_lower;
+  out[0] = (at.distance - spec_.range_lower) / range;
+  out[1] = (spec_.range_upper - at.distance) / range;
+  out[2] =
+      1.0 - (at.beside / spec_.radius) * (at.beside / spec_.radius);  // smooth also where the probe meets the point
+}
+
+}  // namespace posewright

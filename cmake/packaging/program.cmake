@@ -11,6 +11,8 @@ install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DATADIR}/posewright COMPO
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program
   FILES_MATCHING PATTERN "*.md" PATTERN "*.svg" PATTERN "*.png")
 install(FILES README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
+# The page that plans, where scripts/wasm has made it: for `init --show`.
+install(FILES build/wasm-package/posewright.html DESTINATION ${CMAKE_INSTALL_DATADIR}/posewright COMPONENT program OPTIONAL)
 # What the program's report page holds of others.
 install(FILES report/dist/LICENSES.txt RENAME report-licenses.txt DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 

@@ -37,7 +37,11 @@ export class PoseList extends EventTarget {
     /** @type {Map<number, string|null>} of moved poses: why one is not feasible, null: it is */
     this.moves = new Map();
     /** @type {Set<number>} */
-    this.locked = new Set(this.report.plan.poses.filter((p) => p.fixed).map((p) => p.id));
+    this.locked = this.#startLocked();
+  }
+
+  #startLocked() {
+    return new Set(this.report.plan.poses.filter((p) => p.fixed).map((p) => p.id));
   }
 
   /** Poses to be measured, as the route or the plan has them; what cannot be reached comes last, ticked off. */
@@ -54,9 +58,16 @@ export class PoseList extends EventTarget {
     this.#changed();
   }
 
+  /** Whether poses, places or order are not the plan's. Locks are for the next plan and change no figure. */
   get changed() {
     const start = this.#start();
     return this.moves.size > 0 || this.entries.some((e, k) => e.id !== start[k].id || e.on !== start[k].on);
+  }
+
+  /** Whether there is anything to reset. */
+  get touched() {
+    const start = this.#startLocked();
+    return this.changed || this.locked.size !== start.size || [...this.locked].some((id) => !start.has(id));
   }
 
   /** Ids of the ticked poses in order. */

@@ -24,6 +24,7 @@ const cases = [
   { name: 'test_poses', problem: withTestPoses, poses: 8 },
   { name: 'camera', problem: () => 'examples/instruments/camera_on_hand.yaml', poses: 10 },
   { name: 'robust', problem: () => 'examples/instruments/camera_on_hand.yaml', poses: 12, robust: 20 },
+  { name: 'instruments', problem: () => 'examples/instruments/tracker_and_camera.yaml', poses: 14 },
   { name: 'cell', problem: () => 'examples/cell/problem.yaml', poses: 8, candidates: 80, route: true },
 ];
 

@@ -30,12 +30,12 @@ export async function checkLocks(page, { plan, folder, problem }, program) {
   check((await page.locator('.mover').count()) === 0, 'no pose can be moved without the program');
   check((await page.locator('.viewer').innerText()).includes('Poses are moved in posewright.html'), 'the page says where they can');
   const locked = plan.poses.filter((p) => !p.measured).slice(0, 2);
-  const toggle = async () => {
-    for (const { id } of locked) await page.getByRole('button', { name: `Keep pose ${id} in the next plan`, exact: true }).click();
-  };
-  await toggle();
+  const reset = page.getByRole('button', { name: 'Reset' });
+  check(await reset.isDisabled(), 'there is nothing to reset at first');
+  for (const { id } of locked) await page.getByRole('button', { name: `Keep pose ${id} in the next plan`, exact: true }).click();
   const csv = await save(page, folder);
-  await toggle();
+  await reset.click();
+  check((await page.locator('.rows .lock[aria-pressed=true]').count()) === plan.poses.filter((p) => p.fixed).length, 'Reset takes the locks off');
   const lines = readFileSync(csv, 'utf8').trim().split('\n').map((line) => line.split(','));
   const marks = lines.slice(1).filter((line) => line.at(-1) === 'yes').map((line) => Number(line[0]));
   check(lines[0].at(-1) === 'fixed' && marks.sort((a, b) => a - b).join() === locked.map((p) => p.id).join(), 'the list marks what is locked', marks);

@@ -119,9 +119,29 @@ async function checkRobots(browser, c) {
   }
 }
 
+/** Poses of several instruments: the legend counts them, and each dot has the colour of its own. @param {any} browser without WebGL @param {import('./make_reports.mjs').Case} c */
+async function checkInstruments(browser, c) {
+  about(`${c.name} of a list`);
+  const { page, complaints } = await open(browser, c.page);
+  const names = c.plan.instruments.map((i) => i.name);
+  const legend = () => page.locator('.instruments li').allInnerTexts();
+  const counted = (left) => names.map((name) => left.filter((p) => p.instrument === name).length).map((n, k) => `${names[k]} ${n} ${n === 1 ? 'pose' : 'poses'}`);
+  check((await legend()).join() === counted(c.plan.poses).join(), 'the legend has every instrument', await legend());
+  const fills = () => page.locator('svg.wire circle.tip').evaluateAll((dots) => dots.map((dot) => dot.style.fill));
+  const expected = c.plan.poses.map((p, k) => (k === 0 ? '' : `var(--instrument-${names.indexOf(p.instrument) + 1})`));
+  check((await fills()).join() === expected.join(), 'each dot has the colour of its instrument, but for the one shown', await fills());
+  const last = c.plan.poses.at(-1);
+  await page.getByRole('checkbox', { name: `Measure pose ${last.id}`, exact: true }).uncheck();
+  check((await legend()).join() === counted(c.plan.poses.slice(0, -1)).join(), 'a pose that is ticked off is not counted', await legend());
+  check((await fills()).at(-1) === '', 'and has no colour of an instrument');
+  check(complaints.length === 0, 'no complaint', complaints.join(' | '));
+  await page.close();
+}
+
 const every = makeReports(values.program, values.out);
 const drawn = every.filter((c) => c.plan.robust);
-const cases = every.filter((c) => !c.plan.robust);
+const listed = every.filter((c) => c.plan.instruments);
+const cases = every.filter((c) => !c.plan.robust && !c.plan.instruments);
 const browser = await launch({ webgl: true });
 for (const c of cases) await checkPicture(browser, c);
 // Software draws slowly, and every tick of the list draws again: the rest of the page is checked without WebGL below.
@@ -140,6 +160,7 @@ for (const c of cases) await checkCase(plain, c);
 for (const c of cases) await checkSizes(plain, c);
 for (const c of cases.filter((k) => k.name !== 'test_poses')) await checkFallback(plain, c);
 for (const c of drawn) await checkRobots(plain, c);
-check(drawn.length > 0, 'there is a plan for the tolerances');
+for (const c of listed) await checkInstruments(plain, c);
+check(drawn.length > 0 && listed.length > 0, 'there are plans for the tolerances and of several instruments');
 await plain.close();
 process.exitCode = verdict();

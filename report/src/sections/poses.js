@@ -22,7 +22,7 @@ export function posesSection(list) {
   const save = h('button', { class: 'main', onclick: () => saveList(list) }, 'Save as poses.csv');
   const update = () => {
     worth.replaceChildren(...worthOf(list));
-    reset.disabled = !list.changed;
+    reset.disabled = !list.touched;
     save.disabled = list.ids.length === 0;
     const words = warningsOf(list);
     warning.hidden = words.length === 0;

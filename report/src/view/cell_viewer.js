@@ -42,8 +42,8 @@ export class CellViewer {
   show(report) {
     const old = this.view && { view: this.view, sizes: this.sizes, title: this.report.title };
     this.report = report;
-    this.picture = new Picture(report);
-    this.picture.tips.forEach((tip) => (tip.colour = `verdict-${kindOf(reasonAt(report, tip.id))}`));
+    this.picture = new Picture(report, (id) => `verdict-${kindOf(reasonAt(report, id))}`);
+    this.all = new Set(this.picture.tips.map((tip) => tip.id));
     Object.assign(this, makeView(this.holder, this.picture, (id) => this.go(id)));
     this.view.onDraw = (project) => placeLabels(this.labels, this.picture, { current: null }, undefined, this.view.legend, project);
     if (old?.title === report.title) this.view.lookLike(old.view);
@@ -83,7 +83,7 @@ export class CellViewer {
       drawn,
       sights: drawn ? beams(report, drawn, kind === 'sight') : [],
       current: place,
-      on: new Set(),
+      on: this.all,
       nearest: [],
       gap: undefined,
       camera: drawn && report.camera ? cameraLines(report.camera, drawn.tip) : undefined,

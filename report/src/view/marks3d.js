@@ -41,11 +41,10 @@ export class Tips {
   /** @param {number|null} current @param {Set<number>} on */
   update(current, on) {
     const matrix = new Matrix4();
-    const [measured, off] = ['tip', 'off'].map((name) => new Color(colour(name)));
     const { tips, dot } = this.picture;
     tips.forEach((tip, k) => {
       this.mesh.setMatrixAt(k, matrix.makeScale(dot, dot, dot).setPosition(new Vector3(...tip.position)));
-      this.mesh.setColorAt(k, tip.colour ? new Color(colour(tip.colour)) : on.has(tip.id) ? measured : off);
+      this.mesh.setColorAt(k, new Color(colour(on.has(tip.id) ? (tip.colour ?? 'tip') : 'off')));
     });
     this.mesh.instanceMatrix.needsUpdate = true;
     if (this.mesh.instanceColor) this.mesh.instanceColor.needsUpdate = true;

@@ -24,9 +24,13 @@ const smallMovement = 0.04;
 
 /** What both views, WebGL and SVG, draw: the scene's size, the tips, how much larger movements appear than they are. */
 export class Picture {
-  /** @param {import('../types.js').Report} report */
-  constructor(report) {
+  /**
+   * @param {import('../types.js').Report} report
+   * @param {(id: number) => string|undefined} [colourOf] name of a pose's colour (theme.js); without one it is that of all tips
+   */
+  constructor(report, colourOf = () => undefined) {
     this.report = report;
+    this.colourOf = colourOf;
     this.stops = report.keyframes.filter((k) => k.pose);
     this.rest = this.stops.length > 0 ? middleOf(this.stops) : undefined;
     this.factor = this.possibleFactor = this.#suggestedFactor();
@@ -62,7 +66,7 @@ export class Picture {
     this.ground = floors.length > 0 ? floors[0].placement[2] : Math.min(this.extent.low[2], ...solids.map((p) => p[2]));
     this.tips = this.stops
       .filter((k, n, all) => all.findIndex((other) => other.pose === k.pose) === n)
-      .map((k) => ({ id: /** @type {number} */ (k.pose), position: this.enlarged(k.tip.slice(0, 3)) }));
+      .map((k) => ({ id: /** @type {number} */ (k.pose), position: this.enlarged(k.tip.slice(0, 3)), colour: this.colourOf(k.pose) }));
   }
 
   /** @param {number} factor */

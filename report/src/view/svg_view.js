@@ -157,7 +157,7 @@ export class SvgView {
         `tip ${tip.id === shown.current ? 'now' : shown.on.has(tip.id) ? '' : 'off'}`,
         tip.id === shown.current ? 7 : 4,
       );
-      if (tip.colour && tip.id !== shown.current) dot.style.fill = `var(--${tip.colour})`;
+      if (tip.colour && tip.id !== shown.current && shown.on.has(tip.id)) dot.style.fill = `var(--${tip.colour})`;
       dot.addEventListener('click', () => this.pick(tip.id));
       parts.push(dot);
     }

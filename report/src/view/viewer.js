@@ -1,5 +1,6 @@
 import { h } from '../dom.js';
 import { onTheme } from '../theme.js';
+import { InstrumentColours } from './instrument_colours.js';
 import { Picture } from './picture.js';
 import { placeLabels } from './labels.js';
 import { Player } from './player.js';
@@ -39,7 +40,8 @@ export function makeView(holder, picture, pick) {
  */
 export function viewer(list, movable = true) {
   const { report } = list;
-  const picture = new Picture(report);
+  const instruments = new InstrumentColours(report.plan);
+  const picture = new Picture(report, (id) => instruments.of(list.poses.get(id)));
   const player = new Player(list);
   const layers = { bodies: true, sights: true, candidates: false };
   const pick = (id) => player.goTo(id) || list.show(id);
@@ -87,6 +89,7 @@ export function viewer(list, movable = true) {
     holder,
     controls.element,
     h('div', { class: 'tools' }, lookButtons(view, picture), layerBoxes(report, layers, show)),
+    instruments.legend(list),
     picture.possibleFactor > 1 ? enlarger(picture, show) : null,
     solid ? null : h('p', { class: 'note' }, lines),
     h('div', { class: 'now' }, stop, card),

@@ -21,8 +21,8 @@ Measured read_isotropic(const Value& value, std::initializer_list<Quantity> quan
 }  // namespace
 
 DistanceMeasurement read_distance(const Section& section) {
-  section.allow(
-      {"type", "name", "targets", "anchors", "between", "range", "device", "repeats", "repeatability", "load"});
+  section.allow({"type", "name", "of", "in", "targets", "anchors", "between", "range", "device", "repeats",
+                 "repeatability", "load"});
   DistanceMeasurement distance;
   distance.targets = read_targets(section.at("targets"));
   if (const Value* between = section.find("between")) {
@@ -47,7 +47,7 @@ DistanceMeasurement read_distance(const Section& section) {
 }
 
 CameraMeasurement read_camera(const Section& section) {
-  section.allow({"type", "name", "mount", "camera", "board", "device", "repeats", "repeatability", "load"});
+  section.allow({"type", "name", "of", "in", "mount", "camera", "board", "device", "repeats", "repeatability", "load"});
   CameraMeasurement camera;
   camera.on_hand = section.at("mount").choice({"hand", "fixed"}) == "hand";
   const Section lens(section.at("camera"));

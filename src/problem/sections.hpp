@@ -21,6 +21,9 @@ bool is_xacro(const std::filesystem::path& file);
 std::string expanded_xacro(const SerialArmSpec& arm, const yaml::Value& urdf);
 
 MeasurementSpec read_measurement(const yaml::Value& value);
+/// Key `tips` of the robot and what instruments see of them: the ways of the arm, or its base and tip where there is
+/// one way alone. Of a problem whose other sections are read.
+void read_ways(const yaml::Section& root, Problem& problem);
 DistanceMeasurement read_distance(const yaml::Section& section);
 CameraMeasurement read_camera(const yaml::Section& section);
 JointsMeasurement read_joint_sensors(const yaml::Section& section);

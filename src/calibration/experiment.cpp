@@ -6,6 +6,7 @@
 
 #include "posewright/calibration/profile.hpp"
 #include "posewright/calibration/residual_statistics.hpp"
+#include "posewright/model/instrument_choice.hpp"
 #include "posewright/model/rotation_vector.hpp"
 #include "posewright/support/bytes.hpp"
 #include "posewright/support/error.hpp"
@@ -29,7 +30,8 @@ class Position {
   Eigen::Vector3d at(const std::vector<double>& q) {
     if (!model_.predict(q, correction_, pose_))
       throw CannotDo("a place to check is out of reach of the calibrated robot");
-    return pose_.head<3>() + rotation_by(pose_.tail<3>()) * point_;
+    const auto pose = pose_.segment<6>(pose_row(model_.coordinates(), q));
+    return pose.head<3>() + rotation_by(pose.tail<3>()) * point_;
   }
 
  private:

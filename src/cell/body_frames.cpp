@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "posewright/model/pair_names.hpp"
 #include "posewright/model/serial_chain_kinematics.hpp"
 #include "posewright/model/urdf_reader.hpp"
+#include "posewright/model/urdf_ways.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright {
@@ -108,6 +110,142 @@ class ChainFrames : public BodyFrames {
   std::size_t dimension_ = 0;
 };
 
+/// Arm with several tips: frame k is that of the k-th joint of its tree after its motion.
+class TreeFrames : public BodyFrames {
+ public:
+  TreeFrames(UrdfFrames tree, const IdentificationModel& model) : tree_(std::move(tree)) {
+    count_ = 1 + int(tree_.joints.size());
+    dimension_ = model.coordinates().size();
+    for (const Coordinate& own : tree_.coordinates)
+      for (std::size_t i = 0; i < dimension_; ++i)
+        if (model.coordinates()[i].name == own.name) places_.push_back(i);
+  }
+
+  Tip tip(const std::string& name) const override {
+    const auto found = std::ranges::find(tree_.tips, name, &UrdfFrames::Tip::name);
+    return {found->frame, found->X_FrameTip};
+  }
+
+  std::vector<Branch> branches() const override {
+    std::vector<Branch> all;
+    for (const UrdfFrames::Tip& tip : tree_.tips) {
+      std::vector<int> way = way_to(tip.frame);
+      way.pop_back();
+      all.push_back({{way.rbegin(), way.rend()}, {tip.frame, tip.X_FrameTip}});
+    }
+    return all;
+  }
+
+  void poses(std::span<const double> q, int, std::span<Eigen::Isometry3d> X) const override {
+    X[0].setIdentity();
+    for (std::size_t k = 0; k < tree_.joints.size(); ++k) {
+      const Eigen::Isometry3d& parent = X[std::size_t(tree_.parents[k])];
+      Frame<double> frame;
+      frame.R = parent.linear();
+      frame.p = parent.translation();
+      frame.then_joint(tree_.joints[k], q[place(k)]);
+      X[k + 1].setIdentity();
+      X[k + 1].linear() = frame.R;
+      X[k + 1].translation() = frame.p;
+    }
+  }
+
+  Eigen::Vector3d axis(int b) const override { return joint(b).axis; }
+
+  Eigen::VectorXd travel(int, int a, int b, double radius, double axis_radius) const override {
+    Eigen::VectorXd bound = Eigen::VectorXd::Zero(Eigen::Index(dimension_));
+    const std::vector<int> up = way_to(b), down = way_to(a);
+    const auto common = std::ranges::find_if(up, [&](int k) { return std::ranges::count(down, k) > 0; });
+    const auto moved_by = [&](int k, double from_axis) {
+      bound[Eigen::Index(place(std::size_t(k - 1)))] +=
+          std::abs(joint(k).multiplier) * (joint(k).prismatic ? 1.0 : from_axis);
+    };
+    // Of frame k's points: from its own axis, and from its origin.
+    double from_axis = axis_radius, from_origin = radius;
+    for (auto k = up.begin(); k != common; ++k) {
+      moved_by(*k, from_axis);
+      const Eigen::Vector3d way = joint(*k).X_ParentJoint.translation();
+      const double pushed = pushed_by(*k);
+      if (const int above = tree_.parents[std::size_t(*k - 1)]; above > 0)
+        from_axis = way.cross(joint(above).axis).norm() + pushed + from_origin;
+      from_origin += way.norm() + pushed;
+    }
+    // Down to frame a: the axis of joint k goes through the end of the fixed way to it.
+    for (auto k = std::make_reverse_iterator(std::ranges::find(down, *common)); k != down.rend(); ++k) {
+      from_origin += joint(*k).X_ParentJoint.translation().norm();
+      moved_by(*k, from_origin);
+      from_origin += pushed_by(*k);
+    }
+    return bound;
+  }
+
+  double period(std::size_t coordinate) const override {
+    for (std::size_t k = 0; k < tree_.joints.size(); ++k)
+      if (place(k) == coordinate && (tree_.joints[k].prismatic || std::abs(tree_.joints[k].multiplier) != 1.0))
+        return 0.0;
+    return 2 * std::numbers::pi;
+  }
+
+  /// Where a measurement frame is moves no link off another, nor off what stands in the root.
+  int acts_from(const std::string& parameter) const override {
+    const std::string owner = parameter.substr(0, parameter.rfind('.'));
+    for (std::size_t k = 0; k < tree_.joints.size(); ++k)
+      if (const std::string& name = tree_.joints[k].name; name == owner || parameter.starts_with(name + ".coupling."))
+        return int(k) + 1;
+    return count_;
+  }
+
+  bool acts_between(int from, int a, int b, bool) const override { return is_on(from, a) != is_on(from, b); }
+
+  std::optional<Eigen::Matrix<double, 6, 1>> twist(const std::string& parameter, std::span<const double> q,
+                                                   std::span<const Eigen::Isometry3d> X) const override {
+    Eigen::Matrix<double, 6, 1> result = Eigen::Matrix<double, 6, 1>::Zero();
+    const int k = acts_from(parameter);
+    if (k == count_) return result;
+    const ChainJoint& moved = joint(k);
+    const Eigen::Isometry3d origin = X[std::size_t(tree_.parents[std::size_t(k - 1)])] * moved.X_ParentJoint;
+    const auto turn = [&](const Eigen::Vector3d& axis) { result << origin.translation().cross(axis), axis; };
+    const auto push = [&](const Eigen::Vector3d& axis) { result << axis, Eigen::Vector3d::Zero(); };
+    const std::string kind = parameter.substr(parameter.rfind('.') + 1);
+    constexpr std::string_view axes = "xyz";
+    if (kind.size() == 1 && axes.find(kind) != std::string_view::npos) {
+      push(origin.linear().col(Eigen::Index(axes.find(kind))));
+    } else if (kind.size() == 2 && kind[0] == 'r' && axes.find(kind[1]) != std::string_view::npos) {
+      turn(origin.linear().col(Eigen::Index(axes.find(kind[1]))));
+    } else {
+      // An offset, or what acts like one, at most as much.
+      const Eigen::Vector3d axis = moved.multiplier * (origin.linear() * moved.axis);
+      if (moved.prismatic) push(axis);
+      else turn(axis);
+      if (kind == "gear") result *= q[place(std::size_t(k - 1))];
+    }
+    return result;
+  }
+
+ private:
+  const ChainJoint& joint(int frame) const { return tree_.joints[std::size_t(frame - 1)]; }
+  std::size_t place(std::size_t joint) const { return places_[std::size_t(tree_.joints[joint].coordinate)]; }
+
+  /// Frames from that one to the root.
+  std::vector<int> way_to(int frame) const {
+    std::vector<int> way{frame};
+    while (way.back() > 0) way.push_back(tree_.parents[std::size_t(way.back() - 1)]);
+    return way;
+  }
+  bool is_on(int frame, int way_end) const { return std::ranges::count(way_to(way_end), frame) > 0; }
+
+  /// How far the joint of frame k may push it out, m.
+  double pushed_by(int k) const {
+    if (!joint(k).prismatic) return 0.0;
+    const Coordinate& c = tree_.coordinates[std::size_t(joint(k).coordinate)];
+    return std::abs(joint(k).multiplier) * std::max(std::abs(c.lower), std::abs(c.upper)) + std::abs(joint(k).offset);
+  }
+
+  UrdfFrames tree_;
+  std::vector<std::size_t> places_;
+  std::size_t dimension_ = 0;
+};
+
 /// Parallel robot: one frame, its platform.
 class PlatformFrames : public BodyFrames {
  public:
@@ -140,9 +278,17 @@ class PlatformFrames : public BodyFrames {
 
 }  // namespace
 
+std::vector<BodyFrames::Branch> BodyFrames::branches() const {
+  std::vector<int> moving(std::size_t(count_) - 1);
+  std::iota(moving.begin(), moving.end(), 1);
+  return {{moving, tip("")}};
+}
+
 std::unique_ptr<BodyFrames> make_body_frames(const Problem& problem, const IdentificationModel& model) {
-  if (const auto* arm = std::get_if<SerialArmSpec>(&problem.robot))
-    return std::make_unique<ChainFrames>(read_urdf_chain(*arm, problem.at(arm->line)), model);
+  const auto* arm = std::get_if<SerialArmSpec>(&problem.robot);
+  if (arm != nullptr && !arm->ways.empty())
+    return std::make_unique<TreeFrames>(read_urdf_frames(*arm, problem.at(arm->line)), model);
+  if (arm != nullptr) return std::make_unique<ChainFrames>(read_urdf_chain(*arm, problem.at(arm->line)), model);
   for (const Coordinate& c : model.coordinates())
     if (is_second(c.name))
       throw CannotDo("workspace: collision and sight of a parallel robot are not checked for pairs of configurations");

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "posewright/model/identification_model.hpp"
@@ -9,15 +12,28 @@
 
 namespace posewright {
 
-/// Frames that carry bodies: 0 is the measurement frame, the others move with the configuration. Const and callable
-/// from several threads.
+/// Frames that carry bodies: 0 is the measurement frame, of a robot with several tips its root, the others move with
+/// the configuration. Const and callable from several threads.
 class BodyFrames {
  public:
   virtual ~BodyFrames() = default;
   int count() const { return count_; }
-  /// Frame that carries the tool, and where the tip is in it.
-  int tip_frame() const { return count_ - 1; }
-  const Eigen::Isometry3d& X_FrameTip() const { return X_FrameTip_; }
+  struct Tip {
+    int frame = 0;
+    Eigen::Isometry3d X_FrameTip = Eigen::Isometry3d::Identity();
+  };
+  /// Frame that carries a tool, and where the tip is in it.
+  /// @param name  of one of several tips; else of no account
+  virtual Tip tip(const std::string& name) const {
+    (void)name;
+    return {count_ - 1, X_FrameTip_};
+  }
+  /// Frames on the way to a tip, from the first that moves on.
+  struct Branch {
+    std::vector<int> frames;
+    Tip tip;
+  };
+  virtual std::vector<Branch> branches() const;
   /// Robot's poses in one configuration: a pair of configurations has two.
   int poses_per_configuration() const { return poses_; }
 
@@ -32,8 +48,20 @@ class BodyFrames {
   virtual Eigen::VectorXd travel(int pose, int a, int b, double radius, double axis_radius) const = 0;
   /// After which change of a coordinate all frames are where they were, rad; 0: none.
   virtual double period(std::size_t) const { return 0.0; }
-  /// Frames from which on a parameter of that name acts: k means k, k + 1, …; 0: the base, count(): none.
+  /// Frames from which on a parameter of that name acts: k means k and what it carries; 0: the base, count(): none.
   virtual int acts_from(const std::string& parameter) const = 0;
+  /// True if a parameter that acts from there moves frame b, or what stands in it, off frame a.
+  /// @param stands  a is what stands in the measurement frame: a base that is elsewhere moves off it
+  virtual bool acts_between(int from, int a, int b, bool stands) const {
+    return from > (stands && a == 0 ? -1 : std::min(a, b)) && from <= std::max(a, b);
+  }
+  /// Spatial twist of frame 0's axes by a parameter that acts from there, per unit; nothing where the robot's own model
+  /// has it.
+  virtual std::optional<Eigen::Matrix<double, 6, 1>> twist(const std::string& parameter, std::span<const double> q,
+                                                           std::span<const Eigen::Isometry3d> X) const {
+    (void)parameter, (void)q, (void)X;
+    return std::nullopt;
+  }
 
  protected:
   int count_ = 1, poses_ = 1;

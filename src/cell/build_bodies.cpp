@@ -78,20 +78,23 @@ void add_obstacles(const ObstacleFileSpec& spec, const NamedFiles& files, const 
 
 }  // namespace
 
-std::vector<BodyShape> list_shapes(const Problem& problem, int tip_frame, const Eigen::Isometry3d& X_FrameTip) {
+std::vector<BodyShape> list_shapes(const Problem& problem,
+                                   const std::function<BodyFrames::Tip(const std::string& name)>& tip_of) {
   std::vector<BodyShape> shapes;
-  std::string last_link;
+  std::map<int, std::string> last_links;  // by frame
   if (const auto* arm = std::get_if<SerialArmSpec>(&problem.robot))
     for (const LinkGeometry& link : read_urdf_links(*arm, problem.at(arm->line))) {
       for (const LinkShape& s : link.shapes)
         shapes.push_back({link.name, "", link.parent, BodyShape::Kind::link, link.frame, s.X_FrameShape, s.shape,
                           SourcePlace{arm->urdf.string(), link.line}, link.follower, link.colour});
-      if (link.frame == tip_frame) last_link = link.name;
+      last_links[link.frame] = link.name;
     }
   if (!problem.workspace.collision) return shapes;
-  for (const BodySpec& part : problem.workspace.collision->tool)
-    shapes.push_back({part.name, part.station, last_link, BodyShape::Kind::tool, tip_frame,
-                      X_FrameTip * isometry(part.placement), part.shape, problem.at(part.line)});
+  for (const BodySpec& part : problem.workspace.collision->tool) {
+    const BodyFrames::Tip tip = tip_of(part.tip ? part.tip->value : "");
+    shapes.push_back({part.name, part.station, last_links[tip.frame], BodyShape::Kind::tool, tip.frame,
+                      tip.X_FrameTip * isometry(part.placement), part.shape, problem.at(part.line)});
+  }
   const RootPlace cell = cell_place(problem);
   for (const BodySpec& obstacle : problem.workspace.collision->obstacles) {
     // An instrument's own body stands where the instrument does.
@@ -107,7 +110,7 @@ std::vector<BodyShape> list_shapes(const Problem& problem, int tip_frame, const 
 std::vector<Body> build_bodies(const Problem& problem, const BodyFrames& frames) {
   Solids solids(problem, problem.workspace.collision->hulls);
   std::vector<Body> bodies;
-  for (const BodyShape& s : list_shapes(problem, frames.tip_frame(), frames.X_FrameTip())) {
+  for (const BodyShape& s : list_shapes(problem, [&](const std::string& name) { return frames.tip(name); })) {
     refuse_moving_branch(s);
     bodies.push_back({s.name, s.station, s.parent, s.kind == BodyShape::Kind::obstacle, s.kind == BodyShape::Kind::tool,
                       s.frame, s.X_FrameBody, solids.of(s.shape, s.place)});

@@ -10,6 +10,7 @@
 #include "posewright/model/nominal_placement.hpp"
 #include "posewright/model/placement.hpp"
 #include "posewright/model/urdf_reader.hpp"
+#include "posewright/model/urdf_ways.hpp"
 #include "posewright/model/variant_columns.hpp"
 #include "posewright/support/error.hpp"
 #include "scene.hpp"
@@ -87,7 +88,15 @@ TriangleMesh thinned(const TriangleMesh& mesh, std::size_t triangles) {
 }
 
 Drawing::Drawing(const Problem& problem, const Cell& cell) : model_(cell.model), frame_names_{"measurement"} {
-  if (const auto* arm = std::get_if<SerialArmSpec>(&problem.robot)) {
+  const auto* arm = std::get_if<SerialArmSpec>(&problem.robot);
+  if (arm != nullptr && !arm->ways.empty()) {
+    const UrdfFrames tree = read_urdf_frames(*arm, problem.at(arm->line));
+    robot_ = tree.robot;
+    for (const ChainJoint& joint : tree.joints) frame_names_.push_back(joint.name);
+    arm_ = make_body_frames(problem, *model_);
+    for (const MeasurementSpec& instrument : *instruments_of(problem.measurement))
+      tips_.push_back(instrument.of->value);
+  } else if (arm != nullptr) {
     const ChainDescription chain = read_urdf_chain(*arm, problem.at(arm->line));
     robot_ = chain.robot;
     base_ = chain.X_MeasureBase.translation();
@@ -105,8 +114,10 @@ Drawing::~Drawing() = default;
 
 void Drawing::add_bodies(const Problem& problem) {
   if (arm_ == nullptr && tip_ == nullptr) return;
-  const Eigen::Isometry3d X_FrameTip = arm_ != nullptr ? arm_->X_FrameTip() : Eigen::Isometry3d::Identity();
-  for (const BodyShape& s : looks(problem, list_shapes(problem, int(frame_names_.size()) - 1, X_FrameTip))) {
+  const auto tip_of = [this](const std::string& name) {
+    return arm_ != nullptr ? arm_->tip(name) : BodyFrames::Tip{int(frame_names_.size()) - 1};
+  };
+  for (const BodyShape& s : looks(problem, list_shapes(problem, tip_of))) {
     DrawnBody body{s.name, kind_name(s.kind), s.frame, s.X_FrameBody, s.shape, s.colour, {}};
     try {
       if (const std::optional<TriangleMesh> mesh = mesh_of(s.shape, problem, s.place)) {
@@ -157,11 +168,16 @@ DrawnPose Drawing::at(std::span<const double> q) const {
   if (arm_ != nullptr) {
     pose.frames.resize(std::size_t(arm_->count()));
     arm_->poses(q, 0, pose.frames);
-    pose.tip = pose.frames.back() * arm_->X_FrameTip();
-    Polyline line = {base_};
-    for (std::size_t k = 1; k < pose.frames.size(); ++k) line.push_back(pose.frames[k].translation());
-    line.push_back(pose.tip.translation());
-    pose.lines.push_back(std::move(line));
+    const auto placed = [&](const BodyFrames::Tip& tip) {
+      return pose.frames[std::size_t(tip.frame)] * tip.X_FrameTip;
+    };
+    pose.tip = placed(arm_->tip(tips_.empty() ? "" : tips_[std::size_t(q.back())]));
+    for (const BodyFrames::Branch& branch : arm_->branches()) {
+      Polyline line = {base_};
+      for (const int k : branch.frames) line.push_back(pose.frames[std::size_t(k)].translation());
+      line.push_back(placed(branch.tip).translation());
+      pose.lines.push_back(std::move(line));
+    }
   } else if (tip_ != nullptr) {
     pose.tip = model_->tool_pose(q);
     pose.frames = {Eigen::Isometry3d::Identity(), pose.tip};

@@ -12,6 +12,7 @@
 #include "body_frames.hpp"
 #include "posewright/cell/collision.hpp"
 #include "posewright/cell/solid.hpp"
+#include "posewright/model/variant_columns.hpp"
 
 namespace posewright {
 
@@ -99,8 +100,9 @@ struct BodyShape {
   std::string follower{};                         ///< see LinkGeometry
   std::optional<std::array<double, 3>> colour{};  ///< of a link
 };
-/// @param X_FrameTip  tip in the frame `tip_frame`, which carries the tool
-std::vector<BodyShape> list_shapes(const Problem& problem, int tip_frame, const Eigen::Isometry3d& X_FrameTip);
+/// @param tip_of  where the tip of that name is: it carries parts of the tool
+std::vector<BodyShape> list_shapes(const Problem& problem,
+                                   const std::function<BodyFrames::Tip(const std::string& name)>& tip_of);
 
 /// Deviation of a robot within the tolerances of the planned variant from the nominal one, one
 /// standard deviation: largest over the workspace for a pair's bodies relative to each other.
@@ -110,6 +112,8 @@ class UncalibratedError {
   double of(const Body& a, const Body& b) const;
 
  private:
+  void take_twists_of_frames(const VariantColumns& columns, const IdentificationModel& model);
+
   const BodyFrames& frames_;
   std::vector<std::vector<Eigen::Isometry3d>> poses_;             // per sample
   std::vector<std::vector<Eigen::Matrix<double, 6, 1>>> twists_;  // per sample and parameter, one tolerance long

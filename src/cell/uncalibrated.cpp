@@ -37,6 +37,10 @@ std::unique_ptr<IdentificationModel> bare_robot(Problem problem) {
 UncalibratedError::UncalibratedError(const Problem& problem, const IdentificationModel& model, const BodyFrames& frames)
     : frames_(frames) {
   const VariantColumns columns = select_columns(model, {problem, find_variant(problem, "")});
+  if (frames.branches().size() > 1) {
+    take_twists_of_frames(columns, model);
+    return;
+  }
   const std::unique_ptr<IdentificationModel> arm = bare_robot(problem);
   Random random(tolerance_seed, 0);
   Linearisation scratch;
@@ -67,17 +71,31 @@ UncalibratedError::UncalibratedError(const Problem& problem, const Identificatio
   }
 }
 
+/// No instrument sees the whole of a robot with several tips.
+void UncalibratedError::take_twists_of_frames(const VariantColumns& columns, const IdentificationModel& model) {
+  std::vector<std::string> names;
+  for (const int i : columns.selected) names.push_back(model.parameters()[std::size_t(i)].name);
+  for (const std::string& name : names) acts_from_.push_back(frames_.acts_from(name));
+  Random random(tolerance_seed, 0);
+  for (int i = 0; i < samples; ++i) {
+    const std::vector<double> q = random_configuration(model.coordinates(), random);
+    poses_.emplace_back(std::size_t(frames_.count()));
+    frames_.poses(q, 0, poses_.back());
+    twists_.emplace_back();
+    for (std::size_t c = 0; c < names.size(); ++c)
+      twists_.back().push_back(*frames_.twist(names[c], q, poses_.back()) * columns.parameters[c].tolerance);
+  }
+}
+
 double UncalibratedError::of(const Body& a, const Body& b) const {
-  // Where the robot stands moves its links off obstacles of the measurement frame, not off each other.
-  const int fixed_to = a.obstacle && a.frame == 0 ? -1 : std::min(a.frame, b.frame);
-  const int last = std::max(a.frame, b.frame);
   double largest = 0;
   for (std::size_t i = 0; i < poses_.size(); ++i) {
     const Eigen::Isometry3d X = poses_[i][std::size_t(b.frame)] * b.X_FrameBody;
     const Eigen::Vector3d centre = X * b.solid->centre();
     double variance = 0;
     for (std::size_t c = 0; c < acts_from_.size(); ++c) {
-      if (acts_from_[c] <= fixed_to || acts_from_[c] > last) continue;
+      // Where the robot stands moves its links off obstacles of the measurement frame, not off each other.
+      if (!frames_.acts_between(acts_from_[c], a.frame, b.frame, a.obstacle)) continue;
       const Eigen::Vector3d v = twists_[i][c].head<3>(), w = twists_[i][c].tail<3>();
       const double moved = (v + w.cross(centre)).norm() + w.norm() * b.solid->radius();
       variance += moved * moved;

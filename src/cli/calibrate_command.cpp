@@ -49,6 +49,8 @@ struct Results {
         dh(calibrate.dh) {
     if ((!urdf.empty() || dh) && std::get_if<SerialArmSpec>(&problem.robot) == nullptr)
       throw InputError({}, urdf.empty() ? "--dh is for serial arms" : "--urdf is for serial arms", "robot: urdf");
+    if (dh && !std::get<SerialArmSpec>(problem.robot).ways.empty())
+      throw InputError({}, "--dh is for an arm whose instruments see one tip", "base and tip in place of tips");
     std::vector<std::filesystem::path> inputs = files_of(problem);
     inputs.push_back(calibrate.data);
     inputs.insert(inputs.end(), calibrate.campaigns.begin(), calibrate.campaigns.end());

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "origin_editor.hpp"
+#include "posewright/model/forked_chain.hpp"
 #include "posewright/model/urdf_reader.hpp"
 #include "posewright/support/text_file.hpp"
 #include "urdf_document.hpp"
@@ -86,7 +87,8 @@ class XacroJoints {
 std::vector<std::string> stray_mimics(const UrdfDocument& urdf, const std::vector<CalibratedValue>& values) {
   std::vector<std::string> notes;
   for (const auto& [name, joint] : urdf.tree().joints()) {
-    const bool in_chain = std::ranges::find(urdf.way(), &joint, &UrdfStep::joint) != urdf.way().end();
+    const bool in_chain = std::ranges::find(urdf.way(), &joint, &UrdfStep::joint) != urdf.way().end() ||
+                          std::ranges::find(urdf.moving(), &joint) != urdf.moving().end();
     if (!joint.mimic || in_chain) continue;
     for (const CalibratedValue& value : values)
       if (value.name == joint.mimic->master + ".offset" && value.correction() != 0.0)
@@ -129,6 +131,100 @@ ChangedJoints changed_joints(const SerialArmSpec& arm, const SourcePlace& place,
     if (origin.xyz || origin.rpy) result.origins.emplace_back(step.joint->name, origin);
   }
   for (const CalibratedValue& v : correction.left_out) result.left_out.push_back(left_out_text(v, reason_of(v.name)));
+  return result;
+}
+
+bool is_on(const UrdfDocument& urdf, const UrdfJoint& joint) {
+  return std::ranges::any_of(urdf.way(), [&](const UrdfStep& step) { return step.joint->name == joint.name; });
+}
+
+/// An arm with several tips, way by way: a joint that several ways share is displaced alike on each.
+class ChangedOnWays {
+ public:
+  ChangedOnWays(const SerialArmSpec& arm, const SourcePlace& place, const std::vector<CalibratedValue>& values)
+      : arm_(arm), place_(place), values_(values), chains_(read_urdf_ways(arm, place)) {
+    for (const WaySpec& way : arm.ways) documents_.emplace_back(arm_of_way(arm, way), place);
+  }
+
+  ChangedJoints result() {
+    for (std::size_t w = 0; w < documents_.size(); ++w) {
+      ChangedJoints changed = changed_joints(arm_of_way(arm_, arm_.ways[w]), place_, documents_[w],
+                                             VariantSpec::Convention::frames, values_on(w));
+      for (auto& origin : changed.origins)
+        if (std::ranges::find(result_.origins, origin.first, &Changed::first) == result_.origins.end())
+          result_.origins.push_back(std::move(origin));
+      for (std::string& text : changed.left_out) leave_out(std::move(text));
+    }
+    return std::move(result_);
+  }
+
+ private:
+  using Changed = std::pair<std::string, NewOrigin>;
+
+  void leave_out(std::string text) {
+    if (std::ranges::find(result_.left_out, text) == result_.left_out.end())
+      result_.left_out.push_back(std::move(text));
+  }
+
+  /// The values as the chain of a way calls them. What is no joint's is the instruments', and left out by any way.
+  std::vector<CalibratedValue> values_on(std::size_t w) {
+    const WaySpec& way = arm_.ways[w];
+    const bool tool_fits = tool_is_alone(w);
+    std::vector<CalibratedValue> own;
+    for (CalibratedValue value : values_) {
+      const std::size_t dot = value.name.rfind('.');
+      const std::string owner = value.name.substr(0, dot), part = value.name.substr(dot);
+      if (owner == base_name(way)) {
+        if (value.correction() != 0.0)
+          leave_out(left_out_text(value, "where a measurement frame is, is not part of the robot"));
+        continue;
+      }
+      if (owner == tool_name(way)) {
+        if (tool_fits) value.name = "tool" + part;
+        else if (value.correction() != 0.0)
+          leave_out(left_out_text(value, "no joint of its own ends in tip '" + way.of.name + "'"));
+        if (!tool_fits) continue;
+      } else if (owner == "base" || owner.starts_with("base@") || owner.starts_with("tool@")) {
+        continue;
+      } else if (!is_on_way(w, owner) && is_on_any(owner)) {
+        continue;
+      }
+      own.push_back(std::move(value));
+    }
+    return own;
+  }
+
+  bool is_on_way(std::size_t w, const std::string& joint) const {
+    const std::vector<ChainJoint>& joints = chains_.ways[w].chain.joints;
+    return std::ranges::find(joints, joint, &ChainJoint::name) != joints.end();
+  }
+  bool is_on_any(const std::string& joint) const {
+    for (std::size_t w = 0; w < arm_.ways.size(); ++w)
+      if (is_on_way(w, joint)) return true;
+    return false;
+  }
+
+  /// The joint before its tip, whose origin a tool changes, leads to this tip alone.
+  bool tool_is_alone(std::size_t w) const {
+    const UrdfStep& last = documents_[w].way().back();
+    if (last.backward || last.joint->type != UrdfJoint::Type::fixed) return false;
+    for (std::size_t other = 0; other < documents_.size(); ++other)
+      if (arm_.ways[other].of.name != arm_.ways[w].of.name && is_on(documents_[other], *last.joint)) return false;
+    return true;
+  }
+
+  const SerialArmSpec& arm_;
+  SourcePlace place_;
+  const std::vector<CalibratedValue>& values_;
+  WayChains chains_;
+  std::vector<UrdfDocument> documents_;
+  ChangedJoints result_;
+};
+
+ChangedJoints all_changed(const SerialArmSpec& arm, const SourcePlace& place, const UrdfDocument& urdf,
+                          VariantSpec::Convention convention, const std::vector<CalibratedValue>& values) {
+  ChangedJoints result = arm.ways.empty() ? changed_joints(arm, place, urdf, convention, values)
+                                          : ChangedOnWays(arm, place, values).result();
   if (convention == VariantSpec::Convention::frames)
     for (std::string& note : stray_mimics(urdf, values)) result.left_out.push_back(std::move(note));
   return result;
@@ -139,7 +235,7 @@ ChangedJoints changed_joints(const SerialArmSpec& arm, const SourcePlace& place,
 CorrectedUrdf corrected_urdf(const SerialArmSpec& arm, const SourcePlace& place, VariantSpec::Convention convention,
                              const std::vector<CalibratedValue>& values) {
   const UrdfDocument urdf(arm, place);
-  ChangedJoints changed = changed_joints(arm, place, urdf, convention, values);
+  ChangedJoints changed = all_changed(arm, place, urdf, convention, values);
   OriginEditor editor(urdf.text(), arm.urdf.string(), joint_tags(urdf));
   for (const auto& [joint, origin] : changed.origins) editor.set(joint, origin);
   return {editor.text(), std::move(changed.left_out)};
@@ -149,7 +245,7 @@ CorrectedUrdf corrected_xacro(const SerialArmSpec& arm, const SourcePlace& place
                               const std::vector<CalibratedValue>& values) {
   if (arm.expanded == nullptr) throw InputError(place, arm.urdf.string() + " is no xacro file", "--urdf corrects it");
   const UrdfDocument urdf(arm, place);
-  ChangedJoints changed = changed_joints(arm, place, urdf, convention, values);
+  ChangedJoints changed = all_changed(arm, place, urdf, convention, values);
   const std::string text = read_xml_text(arm.urdf, 20'000'000);
   const XacroJoints joints(text, arm.urdf.string(), urdf.tree());
   std::map<std::string, std::size_t> tags;

@@ -17,7 +17,7 @@ struct InstrumentChoice::Inside {
 };
 
 InstrumentChoice::InstrumentChoice(std::vector<std::unique_ptr<ExplicitModel>> models,
-                                   const std::vector<std::string>& names) {
+                                   const std::vector<std::string>& names, std::vector<std::vector<char>> moving) {
   // Of the same robot: without tool.*, which are its last, where all targets stand for the tool.
   const ExplicitModel& whole = **std::ranges::max_element(
       models, {}, [](const std::unique_ptr<ExplicitModel>& model) { return model->tip_parameters(); });
@@ -28,6 +28,7 @@ InstrumentChoice::InstrumentChoice(std::vector<std::unique_ptr<ExplicitModel>> m
   actuators_ = whole.tip().actuators();
   tips_ = 1;
   tip_coordinates_ = coordinates_.size();
+  moving_coordinates_ = std::move(moving);
   coordinates_.push_back(make_choice(instrument_coordinate, names));
   for (std::size_t k = 0; k < models.size(); ++k) {
     const ExplicitModel& model = *models[k];
@@ -264,6 +265,11 @@ std::optional<std::size_t> instrument_index(const std::vector<Coordinate>& coord
   const auto at = std::ranges::find(coordinates, instrument_coordinate, &Coordinate::name);
   if (at == coordinates.end()) return std::nullopt;
   return std::size_t(at - coordinates.begin());
+}
+
+Eigen::Index pose_row(const std::vector<Coordinate>& coordinates, std::span<const double> q) {
+  const auto instrument = instrument_index(coordinates);
+  return instrument ? 6 * Eigen::Index(q[*instrument]) : 0;
 }
 
 }  // namespace posewright

@@ -37,6 +37,15 @@ class LinkCollector {
       X_RootHighest = joint->X_ParentChild() * X_RootHighest;
     root_ = {top.frame, top.X_FrameLink * X_RootHighest.inverse()};
   }
+  /// Of an arm with several ways.
+  LinkCollector(UrdfDocument urdf, std::filesystem::path folder, ShapesOf wanted)
+      : urdf_(std::move(urdf)), folder_(std::move(folder)), wanted_(wanted) {
+    for (const UrdfJoint* joint : urdf_.moving()) {
+      placed_[joint->child] = {int(placed_.size()) + 1, Eigen::Isometry3d::Identity()};
+      moving_.insert(joint);
+      if (joint->mimic) masters_.insert(joint->mimic->master);
+    }
+  }
 
   std::vector<LinkGeometry> links() {
     collect(urdf_.tree().root(), root_, "", "");
@@ -96,16 +105,26 @@ class LinkCollector {
 
 }  // namespace
 
+namespace {
+
+std::vector<LinkGeometry> links_with(ShapesOf wanted, const SerialArmSpec& arm, const SourcePlace& place) {
+  const std::filesystem::path folder = arm.urdf.parent_path();
+  if (!arm.ways.empty()) return LinkCollector(UrdfDocument(arm, place), folder, wanted).links();
+  return LinkCollector(UrdfDocument(arm, place), folder, isometry(arm.placement), wanted).links();
+}
+
+}  // namespace
+
 std::vector<LinkGeometry> read_urdf_links(const SerialArmSpec& arm, const SourcePlace& place) {
-  return LinkCollector(UrdfDocument(arm, place), arm.urdf.parent_path(), isometry(arm.placement)).links();
+  return links_with(ShapesOf::collision, arm, place);
 }
 
 std::vector<LinkGeometry> read_urdf_visuals(const SerialArmSpec& arm, const SourcePlace& place) {
-  return LinkCollector(UrdfDocument(arm, place), arm.urdf.parent_path(), isometry(arm.placement), ShapesOf::visual)
-      .links();
+  return links_with(ShapesOf::visual, arm, place);
 }
 
 RootPlace root_place(const SerialArmSpec& arm, const SourcePlace& place) {
+  if (!arm.ways.empty()) return {};
   return LinkCollector(UrdfDocument(arm, place), {}, isometry(arm.placement)).root();
 }
 

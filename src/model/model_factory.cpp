@@ -5,6 +5,7 @@
 #include "posewright/model/dh_chain.hpp"
 #include "posewright/model/elastic_chain.hpp"
 #include "posewright/model/five_bar.hpp"
+#include "posewright/model/forked_chain.hpp"
 #include "posewright/model/given_poses.hpp"
 #include "posewright/model/instrument_choice.hpp"
 #include "posewright/model/joint_effects.hpp"
@@ -54,19 +55,59 @@ struct MakeTip {
   }
 };
 
+/// The arm on the way of each of the instruments, and which of the coordinates move there.
+class WaysOfInstruments {
+ public:
+  WaysOfInstruments(const SerialArmSpec& arm, const ProblemVariant& variant,
+                    const std::vector<MeasurementSpec>& instruments)
+      : arm_(arm), problem_(variant.problem), chains_(read_urdf_ways(arm, variant.problem.at(arm.line))) {
+    if (variant.spec.convention != VariantSpec::Convention::frames)
+      throw CannotDo("variant '" + variant.spec.name + "': parameters dh and mdh are those of one way alone");
+    tools_.assign(arm.ways.size(), 0);
+    for (const MeasurementSpec& instrument : instruments)
+      if (!make_measurement(instrument)->replaces_tool()) tools_[way_of(arm, instrument)] = 1;
+  }
+
+  std::unique_ptr<TipModel> of(const MeasurementSpec& instrument, std::vector<char>& moving) const {
+    auto chain = std::make_unique<ForkedChain>(chains_, way_of(arm_, instrument), tools_,
+                                               !make_measurement(instrument)->replaces_tool());
+    moving = chain->moving();
+    if (arm_.joint_effects.empty()) return chain;
+    auto with_effects = std::make_unique<JointEffects>(std::move(chain), arm_, problem_.file.string());
+    moving.resize(with_effects->coordinates().size(), 1);
+    return with_effects;
+  }
+
+ private:
+  const SerialArmSpec& arm_;
+  const ProblemFile& problem_;
+  WayChains chains_;
+  std::vector<char> tools_;  // per way
+};
+
+std::unique_ptr<IdentificationModel> seen_by_each(const ProblemVariant& variant,
+                                                  const std::vector<MeasurementSpec>& instruments) {
+  const auto* arm = std::get_if<SerialArmSpec>(&variant.problem.robot);
+  std::optional<WaysOfInstruments> ways;
+  if (arm != nullptr && !arm->ways.empty()) ways.emplace(*arm, variant, instruments);
+  std::vector<std::unique_ptr<ExplicitModel>> models;
+  std::vector<std::string> names;
+  std::vector<std::vector<char>> moving(ways ? instruments.size() : 0);
+  for (std::size_t k = 0; k < instruments.size(); ++k) {
+    const MeasurementSpec& one = instruments[k];
+    models.push_back(std::make_unique<ExplicitModel>(ways ? ways->of(one, moving[k]) : make_tip(variant),
+                                                     make_measurement(one), one.repeatability));
+    names.push_back(one.name);
+  }
+  return std::make_unique<InstrumentChoice>(std::move(models), names, std::move(moving));
+}
+
 std::unique_ptr<IdentificationModel> observed(const ProblemVariant& variant) {
   const Problem& problem = variant.problem;
   if (const auto* compensator = std::get_if<CompensatorGeometrySpec>(&problem.robot))
     return std::make_unique<CompensatorGeometry>(*compensator, problem.measurement);
-  if (const std::vector<MeasurementSpec>* instruments = instruments_of(problem.measurement)) {
-    std::vector<std::unique_ptr<ExplicitModel>> models;
-    std::vector<std::string> names;
-    for (const MeasurementSpec& one : *instruments) {
-      models.push_back(std::make_unique<ExplicitModel>(make_tip(variant), make_measurement(one), one.repeatability));
-      names.push_back(one.name);
-    }
-    return std::make_unique<InstrumentChoice>(std::move(models), names);
-  }
+  if (const std::vector<MeasurementSpec>* instruments = instruments_of(problem.measurement))
+    return seen_by_each(variant, *instruments);
   return observe(make_tip(variant), problem.measurement, problem);
 }
 

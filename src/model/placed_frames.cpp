@@ -1,8 +1,12 @@
 #include "posewright/model/placed_frames.hpp"
 
 #include <algorithm>
+#include <array>
+#include <optional>
 #include <string_view>
 
+#include "displacement.hpp"
+#include "posewright/model/forked_chain.hpp"
 #include "posewright/model/instrument_view.hpp"
 #include "posewright/model/nominal_placement.hpp"
 #include "posewright/model/placement.hpp"
@@ -13,9 +17,42 @@ namespace {
 
 constexpr const char* placement_key = "robot: placement";
 
+/// Displacement by the six parameters of that name; nothing where there are none.
+std::optional<Eigen::Isometry3d> displacement_by(const std::vector<CalibratedValue>& values, const std::string& name) {
+  std::array<double, 6> d{};
+  bool any = false;
+  for (std::size_t k = 0; k < d.size(); ++k)
+    for (const CalibratedValue& v : values)
+      if (v.name == name + "." + displacement_names[k]) {
+        d[k] = v.correction();
+        any = true;
+      }
+  if (!any) return std::nullopt;
+  Frame<double> frame;
+  frame.then_displace(d.data());
+  return isometry_of(frame);
+}
+
+/// Of an arm with several tips: the base of each measurement frame, and each tip whose pose is read.
+std::vector<PlacedFrame> frames_of_ways(const SerialArmSpec& arm, const std::vector<CalibratedValue>& values) {
+  std::vector<PlacedFrame> frames;
+  const auto add = [&](const std::string& name, const std::string& key, const std::string& in,
+                       const Eigen::Isometry3d& nominal) {
+    const auto X = displacement_by(values, name);
+    if (X && std::ranges::find(frames, name, &PlacedFrame::name) == frames.end())
+      frames.push_back({name, key, in, nominal * *X});
+  };
+  for (const WaySpec& way : arm.ways)
+    add(base_name(way), way.in ? "" : placement_key, "measurement",
+        way.in ? Eigen::Isometry3d::Identity() : isometry(arm.placement));
+  for (const WaySpec& way : arm.ways) add(tool_name(way), "", "tip", Eigen::Isometry3d::Identity());
+  return frames;
+}
+
 /// Base and tool of a serial arm. Denavit–Hartenberg parameters displace them about frames of their own.
 std::vector<PlacedFrame> frames_of(const SerialArmSpec& arm, const ProblemVariant& variant,
                                    const std::vector<CalibratedValue>& values, const std::vector<Parameter>&) {
+  if (!arm.ways.empty()) return frames_of_ways(arm, values);
   const ChainDescription chain = read_urdf_chain(arm, variant.problem.at(arm.line));
   const ChainCorrection correction = chain_correction(chain, variant.spec.convention, values);
   return {{"base", placement_key, "measurement", chain.X_MeasureBase * correction.base.X},

@@ -17,7 +17,7 @@ constexpr double whole = 1e-10;
 }  // namespace
 
 UnmodelledEffect::UnmodelledEffect(const IdentificationModel& model, const UnmodelledSize& size)
-    : size_(size), tips_(model.tips()), coordinates_(model.tip_coordinates()) {
+    : size_(size), tips_(model.tips()), coordinates_(model.tip_coordinates()), moving_(model.moving_coordinates()) {
   if (tips_ == 0)
     throw CannotDo(
         "an unmodelled effect moves the tip, but these readings contain no tip position (joint sensors, differences "
@@ -33,18 +33,21 @@ UnmodelledEffect::UnmodelledEffect(const IdentificationModel& model, const Unmod
 }
 
 Eigen::VectorXd UnmodelledEffect::place(std::span<const double> q) const {
-  Eigen::VectorXd f(2 * Eigen::Index(axes_.size()));
+  Eigen::VectorXd f = Eigen::VectorXd::Zero(2 * Eigen::Index(axes_.size()));
+  const std::vector<char>* moving = moving_.empty() ? nullptr : &moving_[std::size_t(q.back())];
   for (std::size_t a = 0; a < axes_.size(); ++a) {
+    if (moving != nullptr && (*moving)[axes_[a].coordinate] == 0) continue;
     const double x = q[axes_[a].coordinate];
     f[2 * Eigen::Index(a)] = axes_[a].turns ? std::cos(x) : axes_[a].unit * x;
-    f[2 * Eigen::Index(a) + 1] = axes_[a].turns ? std::sin(x) : 0.0;
+    if (axes_[a].turns) f[2 * Eigen::Index(a) + 1] = std::sin(x);
   }
   return f;
 }
 
 Eigen::MatrixXd UnmodelledEffect::places(std::span<const double> q) const {
   Eigen::MatrixXd f(2 * Eigen::Index(axes_.size()), tips_);
-  for (int tip = 0; tip < tips_; ++tip) f.col(tip) = place(q.subspan(std::size_t(tip) * coordinates_, coordinates_));
+  for (int tip = 0; tip < tips_; ++tip)
+    f.col(tip) = place(moving_.empty() ? q.subspan(std::size_t(tip) * coordinates_, coordinates_) : q);
   return f;
 }
 

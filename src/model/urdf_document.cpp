@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "parameter_names.hpp"
 #include "posewright/model/srdf.hpp"
@@ -139,6 +140,10 @@ std::vector<UrdfStep> way_between(const UrdfLink& base, const UrdfLink& tip) {
 
 UrdfDocument::UrdfDocument(const SerialArmSpec& arm, const SourcePlace& place)
     : UrdfDocument(arm.expanded ? *arm.expanded : read_xml_text(arm.urdf, largest_urdf), name_of_text(arm)) {
+  if (!arm.ways.empty()) {
+    take_ways(arm, place);
+    return;
+  }
   const SerialArmSpec grouped = with_group(tree_, arm, place);
   base_ = &base_of(tree_, grouped, place);
   tip_ = &tip_of(tree_, grouped, place);
@@ -151,6 +156,27 @@ UrdfDocument::UrdfDocument(std::string text, const std::string& name)
 
 UrdfDocument::UrdfDocument(const std::filesystem::path& file)
     : UrdfDocument(read_xml_text(file, largest_urdf), file.string()) {}
+
+void UrdfDocument::take_ways(const SerialArmSpec& arm, const SourcePlace& place) {
+  const UrdfLink& base = base_of(tree_, arm, place);
+  const auto link_of = [&](const TipSpec& tip) -> const UrdfLink& {
+    return named_link(tree_, arm, "tip", tip.link, place);
+  };
+  std::vector<std::vector<UrdfStep>> ways;
+  for (const WaySpec& way : arm.ways) ways.push_back(way_between(way.in ? link_of(*way.in) : base, link_of(way.of)));
+  tree_.hold(held_joints(tree_, arm, place));
+  std::set<const UrdfJoint*> on_way;
+  for (const auto& way : ways)
+    for (const UrdfStep& step : way)
+      if (step.joint->moves()) on_way.insert(step.joint);
+  std::vector<const UrdfLink*> open{&tree_.root()};
+  while (!open.empty()) {
+    const UrdfLink& link = *open.back();
+    open.pop_back();
+    if (link.above != nullptr && on_way.count(link.above) > 0) moving_.push_back(link.above);
+    for (auto below = link.below.rbegin(); below != link.below.rend(); ++below) open.push_back((*below)->child);
+  }
+}
 
 bool UrdfDocument::moves_base() const {
   return std::ranges::any_of(way_, [](const UrdfStep& step) { return step.backward && step.joint->moves(); });

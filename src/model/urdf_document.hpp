@@ -19,7 +19,7 @@ struct UrdfStep {
 };
 
 /// A URDF file, parsed, and the way from the arm's base link to its tip link: up to the link that both hang on, and
-/// down.
+/// down. Of an arm with several ways base and tip are the root, and `moving` has the joints.
 class UrdfDocument {
  public:
   /// Joints that the arm holds do not move.
@@ -38,16 +38,20 @@ class UrdfDocument {
   const UrdfLink& tip() const { return *tip_; }
   /// Joints from base to tip, fixed ones included; those backward come first.
   const std::vector<UrdfStep>& way() const { return way_; }
+  /// Joints that move on any of several ways, parents before children.
+  const std::vector<const UrdfJoint*>& moving() const { return moving_; }
   /// True if a joint that moves is backward: the base moves in the robot's own root.
   bool moves_base() const;
 
  private:
   UrdfDocument(std::string text, const std::string& name);
+  void take_ways(const SerialArmSpec& arm, const SourcePlace& place);
 
   std::string text_;
   UrdfTree tree_;
   const UrdfLink *base_, *tip_;
   std::vector<UrdfStep> way_;
+  std::vector<const UrdfJoint*> moving_;
 };
 
 }  // namespace posewright

@@ -192,6 +192,9 @@ class ChainBuilder {
 }  // namespace
 
 ChainDescription read_urdf_chain(const SerialArmSpec& arm, const SourcePlace& place) {
+  if (!arm.ways.empty())
+    throw InputError(place, "the instruments see several tips, and this is for one alone",
+                     "robot: base and tip, and instruments that see that tip");
   const UrdfDocument urdf(arm, place);
   ChainBuilder builder(arm, urdf);
   if (arm.elastostatic && urdf.moves_base())

@@ -45,7 +45,7 @@ ShapeSpec read_mesh(const Section& section, const Value& mesh, const std::filesy
 
 BodySpec read_body(const Value& value, const std::string& name, const std::filesystem::path& folder) {
   const Section section(value);
-  section.allow({"name", "box", "cylinder", "sphere", "plane", "mesh", "scale", "at", "rpy", "station"});
+  section.allow({"name", "box", "cylinder", "sphere", "plane", "mesh", "scale", "at", "rpy", "station", "tip"});
   BodySpec body;
   body.name = name;
   body.line = value.line();
@@ -66,6 +66,7 @@ BodySpec read_body(const Value& value, const std::string& name, const std::files
   if (const Value* at = section.find("at")) body.placement.position = at->vector(Quantity::length);
   if (const Value* rpy = section.find("rpy")) body.placement.rpy = rpy->vector(Quantity::angle);
   if (const Value* station = section.find("station")) body.station = station->exact_name().value;
+  if (const Value* tip = section.find("tip")) body.tip = tip->exact_name();
   return body;
 }
 
@@ -90,6 +91,7 @@ void read_obstacles(const Value& value, const std::filesystem::path& folder, std
     }
     collision.obstacles.push_back(
         read_body(item, "obstacle " + std::to_string(collision.obstacles.size() + 1), folder));
+    if (collision.obstacles.back().tip) item.fail("rides on a tip", "parts of the tool do");
     if (!names.insert(collision.obstacles.back().name).second)
       item.fail("repeats the name " + in_quotes(collision.obstacles.back().name), "every name is allowed once");
   }

@@ -86,7 +86,7 @@ void read_point_device(const Value& value, PointNoise& noise, std::vector<Statio
 }
 
 PoseMeasurement read_pose(const Section& section) {
-  section.allow({"type", "name", "mount", "components", "device", "repeats", "repeatability", "load"});
+  section.allow({"type", "name", "of", "in", "mount", "components", "device", "repeats", "repeatability", "load"});
   PoseMeasurement pose;
   const Value* mount = section.find("mount");
   pose.on_hand = mount != nullptr && mount->choice({"hand", "fixed"}) == "hand";
@@ -126,7 +126,7 @@ PoseMeasurement read_pose(const Section& section) {
 
 PointsMeasurement read_points(const Section& section, bool single) {
   const std::string_view key = single ? "target" : "targets";
-  section.allow({"type", "name", key, "components", "device", "repeats", "repeatability", "load"});
+  section.allow({"type", "name", "of", "in", key, "components", "device", "repeats", "repeatability", "load"});
   PointsMeasurement points;
   if (single) points.targets.push_back(read_target("target", section.at(key)));
   else points.targets = read_targets(section.at(key));
@@ -236,6 +236,8 @@ MeasurementSpec read_instrument(const Section& section) {
   const std::string type = section.at("type").choice(instrument_names());
   for (const InstrumentReader& reader : instruments)
     if (reader.name == type) measurement.instrument = reader.read(section);
+  if (const Value* of = section.find("of")) measurement.of = of->exact_name();
+  if (const Value* in = section.find("in")) measurement.in = in->exact_name();
   if (const Value* repeats = section.find("repeats"))
     measurement.repeats = repeats->integer(1, std::numeric_limits<int>::max());
   if (const Value* repeatability = section.find("repeatability"))

@@ -78,6 +78,7 @@ Problem parse_problem(const std::string& text, const fs::path& file, const Packa
   problem.variants = read_variants(root.at("variants"));
   if (const yaml::Value* workspace = root.find("workspace"))
     problem.workspace = read_workspace(*workspace, problem.robot, file.parent_path());
+  read_ways(root, problem);
   if (std::holds_alternative<GivenPosesSpec>(problem.robot) && problem.workspace.limits.empty())
     robot.fail("with poses alone has no limits", "workspace: pose: {x: [0.3, 0.7], …, roll: [150 deg, 210 deg], …}");
   if (const yaml::Value* design = root.find("design"))

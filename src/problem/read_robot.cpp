@@ -82,8 +82,8 @@ void read_xacro(const Section& robot, const Value& urdf, SerialArmSpec& arm) {
 }
 
 SerialArmSpec read_serial_arm(const Section& robot, const std::filesystem::path& file, const Packages& packages) {
-  robot.allow({"urdf", "xacro", "srdf", "group", "base", "tip", "hold", "placement", "encoder_noise", "parameter_names",
-               "elastostatic", "joint_effects", "temperature"});
+  robot.allow({"urdf", "xacro", "srdf", "group", "base", "tip", "tips", "hold", "placement", "encoder_noise",
+               "parameter_names", "elastostatic", "joint_effects", "temperature"});
   SerialArmSpec arm;
   const Value& urdf = robot.at("urdf");
   const std::filesystem::path folder = file.parent_path();
@@ -98,6 +98,8 @@ SerialArmSpec read_serial_arm(const Section& robot, const std::filesystem::path&
     if (robot.has("base") || robot.has("tip"))
       group->fail("cannot be combined with base or tip", "group, or base and tip");
   }
+  if (const Value* tips = robot.find("tips"); tips != nullptr && (robot.has("tip") || arm.group))
+    tips->fail("cannot be combined with tip or group", "tips, or one of these");
   if (const Value* base = robot.find("base")) arm.base = base->exact_name();
   if (const Value* tip = robot.find("tip")) arm.tip = tip->exact_name();
   if (const Value* hold = robot.find("hold"))
@@ -168,7 +170,7 @@ RobotSpec read_robot(const Value& value, const std::filesystem::path& file, cons
     model->fail("cannot be combined with robot.urdf", "one of urdf, model is allowed");
   if (model != nullptr) return read_model(*model, robot);
   if (!robot.has("urdf")) {
-    robot.allow({"urdf", "base", "tip", "hold", "placement", "encoder_noise", "parameter_names", "elastostatic",
+    robot.allow({"urdf", "base", "tip", "tips", "hold", "placement", "encoder_noise", "parameter_names", "elastostatic",
                  "model", "poses"});
     value.fail("has neither urdf nor model nor poses", "one of them is required");
   }

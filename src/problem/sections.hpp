@@ -22,6 +22,9 @@ bool is_xacro(const std::filesystem::path& file);
 std::string expanded_xacro(const SerialArmSpec& arm, const yaml::Value& urdf);
 
 MeasurementSpec read_measurement(const yaml::Value& value);
+/// Key `tips` of the robot and what instruments see of them: the ways of the arm, or its base and tip where there is
+/// one way alone. Of a problem whose other sections are read.
+void read_ways(const yaml::Section& root, Problem& problem);
 DistanceMeasurement read_distance(const yaml::Section& section);
 PlaneMeasurement read_plane_distance(const yaml::Section& section);
 InclinationMeasurement read_inclination(const yaml::Section& section);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "posewright/model/instrument_choice.hpp"
 #include "posewright/model/model_factory.hpp"
 #include "posewright/study/accuracy_configurations.hpp"
 #include "posewright/study/variant.hpp"
@@ -12,9 +13,22 @@ namespace posewright {
 Problem with_pose_seen(Problem problem) {
   PoseMeasurement pose;
   pose.covariance.setIdentity();
-  problem.measurement = {};
-  problem.measurement.instrument = pose;
+  const auto* arm = std::get_if<SerialArmSpec>(&problem.robot);
+  if (arm == nullptr || arm->ways.empty()) problem.measurement = {};
+  for_each_instrument(problem.measurement, [&](MeasurementSpec& instrument) {
+    MeasurementSpec seen;
+    seen.instrument = pose;
+    seen.name = instrument.name;
+    seen.of = instrument.of;
+    seen.in = instrument.in;
+    instrument = std::move(seen);
+  });
   return problem;
+}
+
+std::span<const double> seen_configuration(const IdentificationModel& model, std::span<const double> q, int tip) {
+  if (!model.moving_coordinates().empty()) return q;
+  return q.subspan(std::size_t(tip) * model.tip_coordinates(), model.tip_coordinates());
 }
 
 std::unique_ptr<IdentificationModel> make_pose_seen(const Variant& variant) {
@@ -60,13 +74,14 @@ class SeenPoses {
     if (!model_->linearise(q, {}, selected_, scratch_)) return false;
     test = {Eigen::MatrixXd::Zero(3, columns_), 1.0, Eigen::MatrixXd::Zero(3, columns_)};
     const Eigen::Vector3d from_tip = model_->tool_pose(q).linear() * point;
-    for (Eigen::Index c = 0; c < scratch_.G.cols(); ++c)
-      scratch_.G.col(c).head<3>() += Eigen::Vector3d(scratch_.G.col(c).tail<3>()).cross(from_tip);
+    auto G = scratch_.G.middleRows<6>(pose_row(model_->coordinates(), q));
+    for (Eigen::Index c = 0; c < G.cols(); ++c)
+      G.col(c).head<3>() += Eigen::Vector3d(G.col(c).tail<3>()).cross(from_tip);
     for (std::size_t c = 0; c < where_.size(); ++c) {
-      test.A.col(where_[c]) = scratch_.G.col(Eigen::Index(c)).head<3>();
-      test.turn.col(where_[c]) = scratch_.G.col(Eigen::Index(c)).tail<3>();
+      test.A.col(where_[c]) = G.col(Eigen::Index(c)).head<3>();
+      test.turn.col(where_[c]) = G.col(Eigen::Index(c)).tail<3>();
     }
-    place = {q, scratch_.G.rightCols<6>()};
+    place = {q, G.rightCols<6>()};
     return true;
   }
 

@@ -90,8 +90,10 @@ std::vector<TestPoint> test_points_at_candidates(const Configurations& candidate
                                                  std::vector<TestPlace>& test_places) {
   const Configurations some = thinned(candidates, places_at_candidates);
   std::vector<std::vector<double>> places;
-  for (std::size_t i = 0; i < some.count(); ++i)
-    places.emplace_back(some[i].begin(), some[i].begin() + std::ptrdiff_t(variant.model->tip_coordinates()));
+  for (std::size_t i = 0; i < some.count(); ++i) {
+    const std::span<const double> q = seen_configuration(*variant.model, some[i]);
+    places.emplace_back(q.begin(), q.end());
+  }
   return test_points_at(variant, places, test_places);
 }
 

@@ -74,14 +74,13 @@ Readings readings_of(const Variant& variant, const std::vector<MeasuredPose>& me
 std::array<bool, rigid_motions> taken_out(const Variant& variant, const IdentificationModel& seen,
                                           const Readings& readings) {
   const Eigen::Index nuisance = variant.columns.nuisance;
-  const std::size_t own = variant.model->tip_coordinates();
   Eigen::MatrixXd moved = Eigen::MatrixXd::Zero(readings.J.rows(), rigid_motions);
   for (std::size_t i = 0; i < readings.poses.count(); ++i)
     for (int tip = 0; tip < variant.model->tips(); ++tip) {
       const Eigen::Index row = readings.first[i], rows = readings.rows_of(i);
       moved.middleRows(row, rows) +=
           readings.along.block(row, tip * tip_twists, rows, tip_twists) *
-          rigid_twists(seen.tool_pose(readings.poses[i].subspan(std::size_t(tip) * own, own)));
+          rigid_twists(seen.tool_pose(seen_configuration(*variant.model, readings.poses[i], tip)));
     }
   Eigen::MatrixXd beside(readings.J.rows(), nuisance + readings.left_out.cols());
   beside << readings.J.leftCols(nuisance), readings.left_out;

@@ -302,7 +302,7 @@ class Way:
         self.robot = ROBOTS[robot](self.random)
         self.measurement, self.carried, self.read = INSTRUMENTS[instrument]
         self.tracker = instrument == "tracker"
-        # One or two readings a pose tell less, and of a parallel robot too little without tolerances.
+        # One or two readings a pose tell less: too little without tolerances, and for weights that settle.
         self.few = instrument in ("plane", "level")
         self.poses = 60 if self.few else 30
         self.arm = isinstance(self.robot, Arm)
@@ -383,13 +383,14 @@ class Way:
         result = json.loads(self.run("calibrate", "problem.yaml", "measured.csv", "-o", "found.yaml", *(["--urdf", "found.urdf"] if self.arm else []), "--json").stdout)
         (self.folder / "calibration.json").write_text(json.dumps(result))
         for words in (("--no-prior",), ("--weights", "ols"), ("--weights", "robust"), ("--in-steps", "--profile", "none")):
-            self.run("calibrate", "problem.yaml", "measured.csv", *words, codes=(0, 1) if self.few and words == ("--no-prior",) else (0,))
+            self.run("calibrate", "problem.yaml", "measured.csv", *words, codes=(0, 1) if self.few and words in (("--no-prior",), ("--weights", "robust")) else (0,))
         self.page("calibration.json")
         return self.judge(result)
 
     def judge(self, result):
         """Residuals are the noise, and the ten poses err as the intervals of the estimate and the noise say; of pictures, as those that were fitted."""
-        if not 0.8 < result["noise_scale"] < 1.25:
+        slack = max(1.25, 1 + 4 / np.sqrt(2 * result["freedom"]))
+        if not 1 / slack < result["noise_scale"] < slack:
             raise Fault(f"residuals are {result['noise_scale']:.2f} times the noise")
         judged = [pose["accuracy"] for pose in result["poses"] if pose["held_back"]]
         if judged[0]["observed"]["position"] is None:  # pixels tell no place

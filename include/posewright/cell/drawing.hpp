@@ -27,10 +27,10 @@ struct DrawnBody {
   TriangleMesh mesh;                              ///< of a MeshShape, thinned, m
 };
 
-/// Robot, targets and instrument at one configuration, measurement frame.
+/// Robot, targets and instrument at one configuration, measurement frame; of a robot with several tips its root.
 struct DrawnPose {
   std::vector<Eigen::Isometry3d> frames;
-  std::vector<Polyline> lines;  ///< arm from base to tip, or legs and rims
+  std::vector<Polyline> lines;  ///< arm from base to tip, from the root to each of several, or legs and rims
   Eigen::Isometry3d tip = Eigen::Isometry3d::Identity();
   std::vector<std::optional<Eigen::Vector3d>> targets;
 };
@@ -79,6 +79,7 @@ class Drawing {
   std::unique_ptr<BodyFrames> arm_;  // of a serial arm
   std::unique_ptr<TipModel> tip_;    // of a parallel robot
   Eigen::Vector3d base_ = Eigen::Vector3d::Zero();
+  std::vector<std::string> tips_;  // per instrument, if they see several: the one that it sees
   std::vector<std::string> frame_names_, target_names_;
   std::vector<Eigen::Vector3d> targets_;  // tip frame
   std::vector<std::pair<std::string, Eigen::Isometry3d>> stations_;

@@ -207,6 +207,9 @@ class IdentificationModel {
   int tip_column(int tip, int k) const { return int(parameters_.size()) + 6 * tip + k; }
   /// Coordinates of one tip: its own, one tip after the other, choices last.
   std::size_t tip_coordinates() const { return tip_coordinates_; }
+  /// Where instruments see different tips: per value of the coordinate `instrument`, which of the coordinates of a tip
+  /// move what it reads. Empty: all.
+  const std::vector<std::vector<char>>& moving_coordinates() const { return moving_coordinates_; }
 
   /// q with its choices resolved, at the nominal parameters in force. It refers to q and to this.
   Point nominal_point(std::span<const double> q) const;
@@ -241,6 +244,7 @@ class IdentificationModel {
   int rows_per_target_ = 0;
   int tips_ = 0;
   std::size_t tip_coordinates_ = 0;
+  std::vector<std::vector<char>> moving_coordinates_;
 
  private:
   virtual bool do_linearise(const Point& at, std::span<const int> selected, Linearisation& out) const = 0;

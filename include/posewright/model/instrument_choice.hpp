@@ -15,15 +15,18 @@ namespace posewright {
 inline constexpr const char* instrument_coordinate = "instrument";
 
 /// One robot and several instruments, of which one reads at each pose: the discrete coordinate `instrument`, the last,
-/// says which. Parameters: the robot's, once, then each instrument's own, as "target@NAME.P1.x" (name_in()). Rows and
-/// readings are those of all instruments, one after the other ("NAME.P1.x"). Readings of those that do not read are
-/// NaN, their rows zero with unit noise, so that they tell nothing; and columns are zero where an instrument does not
-/// depend on a parameter (another one's, tool.* where targets stand for the tool).
+/// says which, and so which tip's pose counts where the instruments see several. Parameters: the robot's, once, then
+/// each instrument's own, as "target@NAME.P1.x" (name_in()). Rows and readings are those of all instruments, one after
+/// the other ("NAME.P1.x"). Readings of those that do not read are NaN, their rows zero with unit noise, so that they
+/// tell nothing; and columns are zero where an instrument does not depend on a parameter (another one's, tool.* where
+/// targets stand for the tool).
 class InstrumentChoice : public IdentificationModel {
  public:
   /// @param models  robot and instrument each, of the same robot and at its nominal parameters
   /// @param names   of the instruments, no two alike
-  InstrumentChoice(std::vector<std::unique_ptr<ExplicitModel>> models, const std::vector<std::string>& names);
+  /// @param moving  moving_coordinates()
+  InstrumentChoice(std::vector<std::unique_ptr<ExplicitModel>> models, const std::vector<std::string>& names,
+                   std::vector<std::vector<char>> moving = {});
 
  private:
   bool do_linearise(const Point& at, std::span<const int> selected, Linearisation& out) const override;
@@ -67,5 +70,8 @@ const MeasurementSpec& instrument_at(const MeasurementSpec& measurement, const s
 
 /// Index of the coordinate `instrument`, whose value is the index of an instrument; none without a list.
 std::optional<std::size_t> instrument_index(const std::vector<Coordinate>& coordinates);
+
+/// First row of the pose that is read at q by an instrument, or by one of a list in which each reads a whole pose.
+Eigen::Index pose_row(const std::vector<Coordinate>& coordinates, std::span<const double> q);
 
 }  // namespace posewright

@@ -18,7 +18,9 @@ struct LinkShape {
 struct LinkGeometry {
   std::string name;
   std::string parent;  ///< nearest link above it that has a shape; empty: none
-  int frame = 0;       ///< 0: the measurement frame, k: frame of the chain's k-th joint after its motion
+  /// 0: the measurement frame, k: frame of the chain's k-th joint after its motion. Of an arm with several ways those
+  /// of UrdfFrames.
+  int frame = 0;
   std::vector<LinkShape> shapes;
   int line = 0;                                   ///< of <link> in the URDF
   std::optional<std::array<double, 3>> colour{};  ///< of its first visual: red, green, blue, 0 to 1
@@ -33,7 +35,8 @@ std::vector<LinkGeometry> read_urdf_links(const SerialArmSpec& arm, const Source
 /// All links with a <visual> shape, as read_urdf_links; with their shapes in `shapes`.
 std::vector<LinkGeometry> read_urdf_visuals(const SerialArmSpec& arm, const SourcePlace& place);
 
-/// The frame of the chain that carries the URDF's root link, as LinkGeometry::frame, and where the root is in it.
+/// The frame of the chain that carries the URDF's root link, as LinkGeometry::frame, and where the root is in it; of an
+/// arm with several ways its own.
 struct RootPlace {
   int frame = 0;
   Eigen::Isometry3d X_FrameRoot = Eigen::Isometry3d::Identity();

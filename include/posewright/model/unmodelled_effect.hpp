@@ -22,8 +22,8 @@ struct UnmodelledSize {
 
 /// Every model lacks something: the tip stands off by a twist δ(q) that changes smoothly with the configuration,
 /// δ ~ GP(0, diag(τ² I, τ_r² I) ⊗ k), k(q, q') = exp(−‖f(q) − f(q')‖²/2ℓ²), f = (cos q_j, sin q_j) of angles,
-/// π q_j/range of lengths; load cases and stations do not change it. Repeatability is the same without smoothness: a
-/// twist that is drawn anew at every visit (docs/theory.md).
+/// π q_j/range of lengths, 0 of joints that do not move the tip that is read; load cases and stations do not change it.
+/// Repeatability is the same without smoothness: a twist that is drawn anew at every visit (docs/theory.md).
 class UnmodelledEffect {
  public:
   /// Throws CannotDo if the readings tell of no tip: joint sensors, differences between loads, a compensator's linkage.
@@ -47,7 +47,7 @@ class UnmodelledEffect {
 
   /// f of every tip, one a column.
   Eigen::MatrixXd places(std::span<const double> q) const;
-  /// Overload for a robot at q, its own coordinates alone.
+  /// Overload for a robot at q, its own coordinates alone; where instruments see different tips, all of them.
   Eigen::VectorXd place(std::span<const double> q) const;
   /// k of two places.
   double correlation(Eigen::Ref<const Eigen::VectorXd> a, Eigen::Ref<const Eigen::VectorXd> b) const;
@@ -61,6 +61,7 @@ class UnmodelledEffect {
   UnmodelledSize size_;
   int tips_;
   std::size_t coordinates_;  // of one tip
+  std::vector<std::vector<char>> moving_;
   std::vector<Axis> axes_;
   std::vector<int> columns_;
 };

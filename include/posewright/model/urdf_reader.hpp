@@ -12,7 +12,7 @@ namespace posewright {
 /// @param place  where the problem file names the robot, for errors about base and tip
 /// Throws InputError with the URDF's file and, where it can be told, line: unreadable or malformed file, no such link,
 /// floating or planar joints, limits that are missing, empty or not finite, a zero axis, no moving
-/// joint.
+/// joint; for an arm with several ways.
 ChainDescription read_urdf_chain(const SerialArmSpec& arm, const SourcePlace& place);
 
 }  // namespace posewright

@@ -49,6 +49,7 @@ struct BodySpec {
   Placement placement;
   std::string station;  ///< the instrument whose own body this is: it does not hide its own sight; empty: nobody's
   int line = 0;
+  std::optional<Located<std::string>> tip{};  ///< of a part of the tool of a robot with several tips: which carries it
 };
 
 /// Obstacles of a file: an SDF or URDF world, a MoveIt scene.

@@ -132,6 +132,9 @@ struct MeasurementSpec {
   Repeatability repeatability;
   bool loaded_minus_unloaded = false;  ///< differences between each load case and the first one, at the same pose
   int line = 0;
+  /// Of a robot with several tips, as names: the tip that is seen, and the one that carries the measurement frame,
+  /// none: the robot's base.
+  std::optional<Located<std::string>> of{}, in{};
 };
 
 /// The instruments of a list; null for one alone.

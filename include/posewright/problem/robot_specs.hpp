@@ -82,11 +82,26 @@ struct TemperatureSpec {
   std::vector<double> at;   ///< at which a plan may have poses measured, ascending; never empty
 };
 
-/// Serial arm read from a URDF file: the chain from link `base` to link `tip`.
+/// A link that instruments see, or that carries their measurement frame.
+struct TipSpec {
+  std::string name;           ///< as `of` and `in` of instruments call it
+  Located<std::string> link;  ///< of the URDF
+};
+
+/// A way that instruments measure, from the link that carries their measurement frame to the one that they see.
+struct WaySpec {
+  std::optional<TipSpec> in;  ///< none: the robot's base
+  TipSpec of;
+};
+
+/// Serial arm read from a URDF file: the chain from link `base` to link `tip`; with `tips`, the joints of several ways.
 struct SerialArmSpec {
   std::filesystem::path urdf;                     ///< resolved against the problem file's folder
   int line = 0;                                   ///< of the key `urdf`
   std::optional<Located<std::string>> base, tip;  ///< default: root link, the only leaf link
+  /// Those of all instruments (MeasurementSpec::of, in), each once, if they are several: then `tip` is empty. Empty:
+  /// all measure the way from base to tip.
+  std::vector<WaySpec> ways;
   std::optional<Located<std::filesystem::path>> srdf;
   std::optional<Located<std::string>> group;                        ///< of the SRDF, whose chain gives base and tip
   std::vector<std::pair<Located<std::string>, std::string>> xacro;  ///< arguments, where `urdf` is a xacro file

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "posewright/criterion/criterion_data.hpp"
@@ -11,15 +12,18 @@ namespace posewright {
 
 struct Variant;
 
-/// Robot measured by the pose of its tip: no targets, so the tool counts.
+/// Robot measured by the pose of its tip: no targets, so the tool counts. Where instruments see different tips, each of
+/// them measures that of its own, under its name.
 Problem with_pose_seen(Problem problem);
+/// A configuration of the problem's own model as the one with its pose seen has it.
+std::span<const double> seen_configuration(const IdentificationModel& model, std::span<const double> q, int tip = 0);
 /// Model of the variant with that measurement, at the nominal values of its own model: values of the instrument's own
 /// parameters (targets, stations, a lens) are none of it.
 std::unique_ptr<IdentificationModel> make_pose_seen(const Variant& variant);
 
 /// Motion of the point of interest at a test pose by the tip's displacement.
 struct TestPlace {
-  std::vector<double> q;               ///< of the robot alone
+  std::vector<double> q;               ///< as seen_configuration() gives it
   Eigen::Matrix<double, 6, 6> twists;  ///< position and turn of the point of interest along the tip's unit twists
 };
 
@@ -29,8 +33,8 @@ struct TestPlace {
 std::vector<TestPoint> test_points_of(const Variant& variant, const VariantColumns& columns, std::uint64_t seed,
                                       std::vector<TestPlace>* test_places = nullptr);
 
-/// Overload for the variant's own columns and configurations of the robot alone, all of one weight, for the origin of
-/// the tip.
+/// Overload for the variant's own columns and configurations as seen_configuration() gives them, all of one weight, for
+/// the origin of the tip.
 std::vector<TestPoint> test_points_at(const Variant& variant, const std::vector<std::vector<double>>& configurations,
                                       std::vector<TestPlace>& test_places);
 

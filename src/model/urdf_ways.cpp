@@ -38,6 +38,7 @@ std::size_t way_of(const SerialArmSpec& arm, const MeasurementSpec& instrument) 
 }
 
 WayChains read_urdf_ways(const SerialArmSpec& arm, const SourcePlace& place) {
+  const UrdfDocument names_tips(arm, place);  // a link that is not there is a tip, of whichever end of a way
   WayChains all;
   std::map<std::string, std::string> owners;
   for (const WaySpec& way : arm.ways) {

@@ -305,7 +305,8 @@ class ReportBuilder {
 
   void fill_candidates() {
     if (monitor_.should_stop()) report_.notes.emplace_back("Stopped early: the gain of each candidate is left out.");
-    if (gains_.empty()) return;
+    // Places of tips in several measurement frames are no cloud in one picture.
+    if (gains_.empty() || !study_.first().model->moving_coordinates().empty()) return;
     ReportCandidates candidates;
     candidates.sensitivity = gains_;
     candidates.chosen = chosen_;

@@ -128,5 +128,36 @@ TEST_F(TreeCell, BoundsMotionsBetweenBranches) {
   }
 }
 
+/// What a parameter does to a link, by differences of kinematics along the URDF's tree.
+TEST_F(TreeCell, MovesLinksByParametersAsTheTreeDoes) {
+  const ThreeTips three;
+  const auto model = make_model(three.problem);
+  const auto frames = make_body_frames(three.problem, *model);
+  const std::map<std::string, int> links = {{"lh", frames->tip("left").frame}, {"rh", frames->tip("right").frame}};
+  Random random(6, 0);
+  std::vector<Eigen::Isometry3d> X(8);
+  for (int i = 0; i < 50; ++i) {
+    const std::vector<double> q = random_configuration(model->coordinates(), random);
+    const std::map<std::string, double> joints = joints_of(model->coordinates(), q);
+    frames->poses(q, 0, X);
+    for (const char* joint : {"waist", "tilt", "l1", "l2", "r1", "r2"})
+      for (const char* part : {".x", ".y", ".z", ".rx", ".ry", ".rz", ".offset", ".gear"}) {
+        const std::string name = std::string(joint) + part;
+        const int from = frames->acts_from(name);
+        const Eigen::Matrix<double, 6, 1> twist = *frames->twist(name, q, X);
+        for (const auto& [link, frame] : links) {
+          const auto at = [&](double change) {
+            return link_in_root<double>(three.plain, link, joints, {{name, change}}).p;
+          };
+          const Eigen::Vector3d p = at(0), moved = (at(1e-6) - at(-1e-6)) / 2e-6;
+          const Eigen::Vector3d stated = twist.head<3>() + twist.tail<3>().cross(p);
+          const bool acts = frames->acts_between(from, 0, frame, false);
+          EXPECT_LT((moved - (acts ? stated : Eigen::Vector3d::Zero())).norm(), 1e-8) << name << " " << link;
+        }
+        EXPECT_EQ(frames->acts_between(from, links.at("lh"), links.at("rh"), false), name[0] == 'l' || name[0] == 'r');
+      }
+  }
+}
+
 }  // namespace
 }  // namespace posewright

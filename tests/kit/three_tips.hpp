@@ -53,7 +53,7 @@ measurement:
 variants:
   offsets: {parameters: [pan.offset, l1.offset, l2.gear, r1.offset], nuisance: ["base.*", "base@eye.*", "target@*", "tool@left.*"]}
 workspace: {joints: {margin: 1 deg}}
-design: {criterion: o1, poses: 24, candidates: 200, restarts: 1, method: exchange}
+design: {criterion: o1, poses: 24, candidates: 100, restarts: 1, method: exchange}
 )";
 
 struct ThreeTips {
@@ -61,8 +61,8 @@ struct ThreeTips {
   PlainUrdf plain;
   Problem problem;
 
-  explicit ThreeTips(const std::string& text = three_tips_problem)
-      : plain(folder.write("three.urdf", three_tips_urdf)), problem(read_problem(folder.write("p.yaml", text))) {}
+  explicit ThreeTips(const std::string& text = three_tips_problem, const std::string& urdf = three_tips_urdf)
+      : plain(folder.write("three.urdf", urdf)), problem(read_problem(folder.write("p.yaml", text))) {}
 };
 
 /// Values by name; 0 where there is none.

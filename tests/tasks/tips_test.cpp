@@ -19,6 +19,7 @@
 #include "posewright/support/file.hpp"
 #include "posewright/tasks/calibrate_problem.hpp"
 #include "posewright/tasks/evaluate_problem.hpp"
+#include "posewright/tasks/observe_problem.hpp"
 #include "posewright/tasks/plan_problem.hpp"
 #include "tests/kit/example_problems.hpp"
 #include "tests/kit/recompute.hpp"
@@ -303,6 +304,15 @@ TEST(Tips, MixedDataGiveTheLeastSquaresOfAnotherRoadAndTheCorrectedUrdf) {
   EXPECT_THAT(corrected.left_out, Not(Contains(HasSubstr("tool@left"))));
 }
 
+TEST(Tips, HaveAsManyParametersAsATreeOfTheirJoints) {
+  ObserveOptions options;
+  options.variant = "geometry";
+  options.candidates = 400;
+  const Observation o = observe_problem(example("humanoid/both_hands.yaml"), options, Monitor{}).front();
+  // Four of each joint that turns, six of base, camera, both boards and the reflectors, three between the reflectors.
+  EXPECT_EQ(o.identifiability.rank, 4 * 17 + 6 * 5 - 6 + 3);
+}
+
 /// The tool of a tip whose joint carries another tip, too, would move that one.
 TEST(Tips, ATipOnTheWayToAnotherLeavesItsToolOutOfTheUrdf) {
   std::string text = three_tips_problem;
@@ -322,7 +332,11 @@ TEST(Tips, OfLinksThatAreNotThereAreNamed) {
   text.replace(text.find("right: rh"), 9, "right: rhh");
   const ThreeTips three(text);
   EXPECT_THAT(tips_complaint([&] { make_model(three.problem); }),
-              testing::AllOf(HasSubstr("p.yaml:2: "), HasSubstr("'rhh' is not a link of three.urdf")));
+              testing::AllOf(HasSubstr("p.yaml:2: "), HasSubstr("tip 'rhh' is not a link of three.urdf")));
+  std::string eye = three_tips_problem;
+  eye.replace(eye.find("eye: eye"), 8, "eye: eyes");
+  EXPECT_THAT(tips_complaint([&] { make_model(ThreeTips(eye).problem); }),
+              HasSubstr("tip 'eyes' is not a link of three.urdf (did you mean 'eye'?)"));
 }
 
 TEST(Tips, WithoutAJointBetweenAreNamed) {

@@ -243,6 +243,21 @@ async function checkMeasured(page) {
   check(compensated.text !== readFileSync(join(out, 'poses.csv'), 'utf8'), 'and are other ones');
 }
 
+/** More candidates than 4 GB hold are refused before they are drawn, and nothing is lost. */
+async function checkMemory(page) {
+  about('memory');
+  const before = await text(page);
+  const large = before.includes('candidates:') ? before.replace(/candidates: \d+/, 'candidates: 9000000') : before.replace(/^design: *\{/m, 'design: {candidates: 9000000, ').replace(/^design:\n/m, 'design:\n  candidates: 9000000\n');
+  await redrawn(page, () => page.locator('.yaml').fill(large));
+  await step(page, /Plan/);
+  await page.getByRole('button', { name: 'Plan', exact: true }).click();
+  const said = page.locator('#step-3 .messages li', { hasText: 'memory' });
+  await said.waitFor();
+  check(/^9000000 candidates need up to \d+\.\d GB of memory, and 4\.3 GB is all there is; ask for at most \d+$/.test(await said.innerText()), 'what does not fit is one sentence', await said.innerText());
+  check((await text(page)) === large, 'and the problem stays');
+  await redrawn(page, () => page.locator('.yaml').fill(before));
+}
+
 async function checkBadInput(page) {
   about('bad input');
   await step(page, /Robot/);
@@ -341,6 +356,7 @@ await checkPlan(page);
 await checkMove(page);
 await checkStop(page);
 await checkMeasured(page);
+await checkMemory(page);
 await checkBadInput(page);
 await checkLeftovers(page);
 about('the page');

@@ -86,7 +86,8 @@ TriangleMesh thinned(const TriangleMesh& mesh, std::size_t triangles) {
   return result;
 }
 
-Drawing::Drawing(const Problem& problem, const Cell& cell) : model_(cell.model), frame_names_{"measurement"} {
+Drawing::Drawing(const Problem& problem, const Cell& cell)
+    : model_(cell.model), cell_(cell_place(problem)), frame_names_{"measurement"} {
   if (const auto* arm = std::get_if<SerialArmSpec>(&problem.robot)) {
     const ChainDescription chain = read_urdf_chain(*arm, problem.at(arm->line));
     robot_ = chain.robot;

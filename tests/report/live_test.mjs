@@ -112,6 +112,31 @@ async function checkDrag(page) {
   check((await text(page)) === before, 'Undo brings it back');
 }
 
+/** Where the base moves, the cell is not in the measurement frame: a body stays where it is dropped all the same. */
+async function checkMovingBase(page) {
+  about('a base that moves');
+  await step(page, /Robot/);
+  const given = (name, from = name) => ({ name, mimeType: 'text/plain', buffer: readFileSync(join(root, 'examples/two_arms', from)) });
+  const files = [given('problem.yaml', 'left_sees_right.yaml'), given('two_arms.urdf')];
+  await redrawn(page, () => page.locator('#step-0 input[type=file]').first().setInputFiles(files));
+  await step(page, /Cell/);
+  await redrawn(page, () => page.getByRole('button', { name: 'Add a box' }).click());
+  await page.locator('.live-view').getByRole('button', { name: 'All' }).click();
+  await page.waitForTimeout(500);
+  const canvas = page.locator('.live-view canvas');
+  const grip = () => canvas.evaluate((c) => JSON.parse(c.dataset.grips).box);
+  const [before, box, from] = [await text(page), await canvas.boundingBox(), await grip()];
+  await page.mouse.move(box.x + from[0], box.y + from[1]);
+  await page.mouse.down();
+  await page.mouse.move(box.x + from[0] + 12, box.y + from[1] - 9, { steps: 4 });
+  await redrawn(page, () => page.mouse.up());
+  const to = await grip();
+  check((await text(page)) !== before, 'dragging the box changes the text');
+  check(Math.hypot(to[0] - from[0] - 12, to[1] - from[1] + 9) < 2, 'it is drawn where it was dropped', [from, to]);
+  const drawn = Math.hypot(to[0] - from[0], to[1] - from[1]);
+  check(drawn > 5, 'which is elsewhere', drawn);
+}
+
 /** @returns the text of the program that was exported */
 async function checkPlan(page) {
   about('plan and program');
@@ -357,6 +382,7 @@ await checkMove(page);
 await checkStop(page);
 await checkMeasured(page);
 await checkMemory(page);
+await checkMovingBase(page);
 await checkBadInput(page);
 await checkLeftovers(page);
 about('the page');

@@ -15,6 +15,10 @@ install(FILES README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 install(FILES build/wasm-package/posewright.html DESTINATION ${CMAKE_INSTALL_DATADIR}/posewright COMPONENT program OPTIONAL)
 # What the program's report page holds of others.
 install(FILES report/dist/LICENSES.txt RENAME report-licenses.txt DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
+if(POSEWRIGHT_MUSL)
+  cmake_path(GET POSEWRIGHT_MUSL PARENT_PATH musl_place)
+  install(FILES ${musl_place}/../../share/doc/musl-dev/copyright RENAME musl-licenses.txt DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
+endif()
 
 posewright_package(posewright program SECTION science
   SUMMARY "plans which poses to measure before a robot is calibrated"

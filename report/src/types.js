@@ -5,7 +5,7 @@
  * @typedef {{version: string, title: string, files: [string, string], plans: [Report, Report]}} TwoPlansReport
  *
  * Of a problem without a plan (posewright/report-of-problem/1), with the drawn parts of Report.
- * @typedef {{version: string, title: string, problem: {file: string, sha256: string}, seed: number, notes: string[], faults: string[], reasons: string[], verdicts: number[], evenly: number}} ProblemReport
+ * @typedef {{version: string, title: string, problem: {file: string, sha256: string}, seed: number, notes: string[], faults: string[], reasons: string[], verdicts: number[], evenly: number, cell: {frame: number, placement: Placement}}} ProblemReport
  *
  * Shapes of the data, schema posewright/report/1. SI units; 7-vectors are x y z qx qy qz qw in the measurement frame;
  * "packed" is the lower triangle, row by row, of a symmetric matrix.

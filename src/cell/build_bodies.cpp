@@ -52,15 +52,6 @@ void refuse_moving_branch(const BodyShape& shape) {
                      "remove its <collision>, or choose a tip whose chain has the joint");
 }
 
-/// Frame and pose in it of what stands in the cell: in the URDF's root if joints of the way move the base, as the
-/// measurement frame moves with its base; else in the measurement frame.
-RootPlace cell_place(const Problem& problem) {
-  const auto* arm = std::get_if<SerialArmSpec>(&problem.robot);
-  if (arm == nullptr) return {};
-  const RootPlace root = root_place(*arm, problem.at(arm->line));
-  return root.base_moves() ? root : RootPlace{};
-}
-
 void add_obstacles(const ObstacleFileSpec& spec, const NamedFiles& files, const RootPlace& cell,
                    std::vector<BodyShape>& shapes) {
   std::set<std::string> taken;
@@ -77,6 +68,13 @@ void add_obstacles(const ObstacleFileSpec& spec, const NamedFiles& files, const 
 }
 
 }  // namespace
+
+RootPlace cell_place(const Problem& problem) {
+  const auto* arm = std::get_if<SerialArmSpec>(&problem.robot);
+  if (arm == nullptr) return {};
+  const RootPlace root = root_place(*arm, problem.at(arm->line));
+  return root.base_moves() ? root : RootPlace{};
+}
 
 std::vector<BodyShape> list_shapes(const Problem& problem,
                                    const std::function<BodyFrames::Tip(const std::string& name)>& tip_of) {

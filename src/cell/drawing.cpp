@@ -87,7 +87,8 @@ TriangleMesh thinned(const TriangleMesh& mesh, std::size_t triangles) {
   return result;
 }
 
-Drawing::Drawing(const Problem& problem, const Cell& cell) : model_(cell.model), frame_names_{"measurement"} {
+Drawing::Drawing(const Problem& problem, const Cell& cell)
+    : model_(cell.model), cell_(cell_place(problem)), frame_names_{"measurement"} {
   const auto* arm = std::get_if<SerialArmSpec>(&problem.robot);
   if (arm != nullptr && !arm->ways.empty()) {
     const UrdfFrames tree = read_urdf_frames(*arm, problem.at(arm->line));

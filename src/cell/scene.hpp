@@ -12,6 +12,7 @@
 #include "body_frames.hpp"
 #include "posewright/cell/collision.hpp"
 #include "posewright/cell/solid.hpp"
+#include "posewright/model/link_geometry.hpp"
 #include "posewright/model/variant_columns.hpp"
 
 namespace posewright {
@@ -100,6 +101,10 @@ struct BodyShape {
   std::string follower{};                         ///< see LinkGeometry
   std::optional<std::array<double, 3>> colour{};  ///< of a link
 };
+/// Frame and pose in it of what stands in the cell: in the URDF's root if joints of the way move the base, as the
+/// measurement frame moves with its base; else in the measurement frame.
+RootPlace cell_place(const Problem& problem);
+
 /// @param tip_of  where the tip of that name is: it carries parts of the tool
 std::vector<BodyShape> list_shapes(const Problem& problem,
                                    const std::function<BodyFrames::Tip(const std::string& name)>& tip_of);

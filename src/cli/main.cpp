@@ -9,6 +9,7 @@
 #include "command.hpp"
 #include "design_options.hpp"
 #include "help.hpp"
+#include "mathematics.hpp"
 #include "posewright/support/near_words.hpp"
 #include "posewright/support/table.hpp"
 #include "posewright/support/tasks.hpp"
@@ -81,7 +82,7 @@ int run_program(const Words& words) {
   }
   const std::string& first = words.front();
   if (first == "--version") {
-    fmt::print("posewright {}\n", version);
+    fmt::print("posewright {}\nMathematical functions: {}\n", version, mathematics);
     return done;
   }
   if (first == "--help" || first == "-h" || first == "help") {

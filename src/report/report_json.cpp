@@ -201,7 +201,8 @@ std::string report_json(const ProblemReport& report) {
                {"faults", report.faults},
                {"reasons", report.reasons},
                {"verdicts", report.verdicts},
-               {"evenly", report.evenly}};
+               {"evenly", report.evenly},
+               {"cell", {{"frame", report.scene.cell_frame}, {"placement", placement_json(report.scene.X_FrameCell)}}}};
   add_scene(json, report.scene);
   return json_text(json, JsonLayout::one_line) + "\n";
 }

@@ -178,6 +178,8 @@ void fill_scene(Report& report, const Drawing& drawing, const std::vector<std::p
   if (!drawing.warning().empty()) report.notes.push_back(drawing.warning());
   if (!drawing.robot().empty()) report.title = drawing.robot();
   report.frames = drawing.frames();
+  report.cell_frame = drawing.cell().frame;
+  report.X_FrameCell = drawing.cell().X_FrameRoot;
   report.stations = drawing.stations();
   report.targets = drawing.targets();
   for (const DrawnBody& drawn : drawing.bodies()) {

@@ -284,5 +284,20 @@ TEST(NearWords, OnlyOneNearestWordIsMeant) {
   EXPECT_EQ(meant_instead("posse", {"poses"}), " (did you mean 'poses'?)");
 }
 
+// A process that may have 1.5 GB is told before anything is drawn.
+TEST(Messages, MoreCandidatesThanMemoryHoldsAreRefusedBeforeTheyAreDrawn) {
+  const TemporaryFolder folder;
+  folder.write("p.yaml", problem());
+  const std::string program = POSEWRIGHT_PROGRAM;
+  const std::string command = "ulimit -v 1500000; '" + program + "' plan '" + (folder.path() / "p.yaml").string() +
+                              "' --candidates 9000000 --threads 1 2> '" + (folder.path() / "said").string() + "'";
+  const int status = std::system(command.c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 1);
+  EXPECT_THAT(
+      read_file(folder.path() / "said"),
+      testing::MatchesRegex("posewright: 9000000 candidates need up to [0-9.]+ GB of memory, and 1.5 GB is all there "
+                            "is; ask for at most [0-9]+\n"));
+}
+
 }  // namespace
 }  // namespace posewright

@@ -53,7 +53,7 @@ with tempfile.TemporaryDirectory() as empty, tempfile.TemporaryDirectory() as ot
     here, there = pathlib.Path(empty), pathlib.Path(other)
     run("npm", "install", "--offline", "--no-audit", "--no-fund", package.resolve(), cwd=here)
     npx = ("npx", "--offline", "posewright")
-    assert run(*npx, "--version", cwd=here) == f"posewright {version}\n"
+    assert run(*npx, "--version", cwd=here) == f"posewright {version}\nMathematical functions: musl\n"
     said = flow(here, *npx)
     assert "PTP" in (here / "CALPOSES.src").read_text()
     assert (here / "calibrated.yaml").read_text().startswith("posewright_parameters: 1\n")

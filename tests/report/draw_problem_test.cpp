@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "posewright/support/file.hpp"
 #include "posewright/support/json.hpp"
 #include "tests/kit/example_problems.hpp"
 #include "tests/kit/temporary_folder.hpp"
@@ -43,6 +44,43 @@ ProblemReport drawn_problem(const std::string& workspace, bool ways = true) {
 std::string verdict(const ProblemReport& report, std::size_t place) {
   const int v = report.verdicts[place];
   return v < 0 ? "" : report.reasons[std::size_t(v)];
+}
+
+/// Positions of the obstacle `box` at the tip's keyframes, by the frame that carries the cell and by its own.
+std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> places_of_box(const Report& scene,
+                                                                       const Eigen::Vector3d& p_CellBox) {
+  std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> places;
+  for (const ReportKeyframe& k : scene.keyframes)
+    for (const ReportBody& body : scene.bodies)
+      if (body.name == "box")
+        places.emplace_back(k.frames[std::size_t(scene.cell_frame)] * (scene.X_FrameCell * p_CellBox),
+                            (k.frames[std::size_t(body.frame)] * body.X_FrameBody).translation());
+  return places;
+}
+
+TEST(DrawProblem, TellsWhereTheCellStands) {
+  const std::string box =
+      "workspace: {collision: {obstacles: [{name: box, box: [0.1, 0.1, 0.1], at: [1.5, -2, 0.25]}]}}\n";
+  const Report still = drawn_problem(box).scene;
+  EXPECT_EQ(still.cell_frame, 0);
+  EXPECT_TRUE(still.X_FrameCell.isApprox(Eigen::Isometry3d::Identity()));
+
+  // Both arms of a torso that stands move the frame of the measurement.
+  const TemporaryFolder folder;
+  std::string text = read_file(examples_folder() / "two_arms/left_sees_right.yaml");
+  const std::string robot = "urdf: two_arms.urdf", collision = "collision: {";
+  text.replace(text.find(robot), robot.size(), "urdf: " + (examples_folder() / "two_arms/two_arms.urdf").string());
+  text.replace(text.find(collision), collision.size(),
+               collision + "obstacles: [{name: box, box: [0.1, 0.1, 0.1], at: [1.5, -2, 0.25]}], ");
+  DrawOptions options;
+  options.evenly = 10;
+  options.feasible = 0;
+  const Report moving = draw_problem(read_problem(folder.write("problem.yaml", text)), options, Monitor{}).scene;
+  EXPECT_GT(moving.cell_frame, 0);
+  const auto places = places_of_box(moving, {1.5, -2, 0.25});
+  ASSERT_GE(places.size(), 11u);
+  for (const auto& [by_cell, drawn] : places) EXPECT_LT((by_cell - drawn).norm(), 1e-9);
+  EXPECT_GT((places.front().second - places.back().second).norm(), 0.01) << "the base moves";
 }
 
 TEST(DrawProblem, HasOneVerdictAKeyframeThatItsTipShows) {

@@ -112,6 +112,31 @@ async function checkDrag(page) {
   check((await text(page)) === before, 'Undo brings it back');
 }
 
+/** Where the base moves, the cell is not in the measurement frame: a body stays where it is dropped all the same. */
+async function checkMovingBase(page) {
+  about('a base that moves');
+  await step(page, /Robot/);
+  const given = (name, from = name) => ({ name, mimeType: 'text/plain', buffer: readFileSync(join(root, 'examples/two_arms', from)) });
+  const files = [given('problem.yaml', 'left_sees_right.yaml'), given('two_arms.urdf')];
+  await redrawn(page, () => page.locator('#step-0 input[type=file]').first().setInputFiles(files));
+  await step(page, /Cell/);
+  await redrawn(page, () => page.getByRole('button', { name: 'Add a box' }).click());
+  await page.locator('.live-view').getByRole('button', { name: 'All' }).click();
+  await page.waitForTimeout(500);
+  const canvas = page.locator('.live-view canvas');
+  const grip = () => canvas.evaluate((c) => JSON.parse(c.dataset.grips).box);
+  const [before, box, from] = [await text(page), await canvas.boundingBox(), await grip()];
+  await page.mouse.move(box.x + from[0], box.y + from[1]);
+  await page.mouse.down();
+  await page.mouse.move(box.x + from[0] + 12, box.y + from[1] - 9, { steps: 4 });
+  await redrawn(page, () => page.mouse.up());
+  const to = await grip();
+  check((await text(page)) !== before, 'dragging the box changes the text');
+  check(Math.hypot(to[0] - from[0] - 12, to[1] - from[1] + 9) < 2, 'it is drawn where it was dropped', [from, to]);
+  const drawn = Math.hypot(to[0] - from[0], to[1] - from[1]);
+  check(drawn > 5, 'which is elsewhere', drawn);
+}
+
 /** @returns the text of the program that was exported */
 async function checkPlan(page) {
   about('plan and program');
@@ -243,6 +268,21 @@ async function checkMeasured(page) {
   check(compensated.text !== readFileSync(join(out, 'poses.csv'), 'utf8'), 'and are other ones');
 }
 
+/** More candidates than 4 GB hold are refused before they are drawn, and nothing is lost. */
+async function checkMemory(page) {
+  about('memory');
+  const before = await text(page);
+  const large = before.includes('candidates:') ? before.replace(/candidates: \d+/, 'candidates: 9000000') : before.replace(/^design: *\{/m, 'design: {candidates: 9000000, ').replace(/^design:\n/m, 'design:\n  candidates: 9000000\n');
+  await redrawn(page, () => page.locator('.yaml').fill(large));
+  await step(page, /Plan/);
+  await page.getByRole('button', { name: 'Plan', exact: true }).click();
+  const said = page.locator('#step-3 .messages li', { hasText: 'memory' });
+  await said.waitFor();
+  check(/^9000000 candidates need up to \d+\.\d GB of memory, and 4\.3 GB is all there is; ask for at most \d+$/.test(await said.innerText()), 'what does not fit is one sentence', await said.innerText());
+  check((await text(page)) === large, 'and the problem stays');
+  await redrawn(page, () => page.locator('.yaml').fill(before));
+}
+
 async function checkBadInput(page) {
   about('bad input');
   await step(page, /Robot/);
@@ -341,6 +381,8 @@ await checkPlan(page);
 await checkMove(page);
 await checkStop(page);
 await checkMeasured(page);
+await checkMemory(page);
+await checkMovingBase(page);
 await checkBadInput(page);
 await checkLeftovers(page);
 about('the page');

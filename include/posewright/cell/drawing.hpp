@@ -10,6 +10,7 @@
 #include "posewright/cell/cell.hpp"
 #include "posewright/cell/solid.hpp"
 #include "posewright/model/instrument_view.hpp"
+#include "posewright/model/link_geometry.hpp"
 #include "posewright/model/tip_model.hpp"
 
 namespace posewright {
@@ -56,6 +57,8 @@ class Drawing {
 
   /// Names of the frames that carry bodies; the first is the measurement frame.
   const std::vector<std::string>& frames() const { return frame_names_; }
+  /// Where the positions of obstacles in the file are.
+  const RootPlace& cell() const { return cell_; }
   const std::vector<DrawnBody>& bodies() const { return bodies_; }
   const std::vector<std::string>& targets() const { return target_names_; }
   /// Instruments that stand still.
@@ -79,6 +82,7 @@ class Drawing {
   std::unique_ptr<BodyFrames> arm_;  // of a serial arm
   std::unique_ptr<TipModel> tip_;    // of a parallel robot
   Eigen::Vector3d base_ = Eigen::Vector3d::Zero();
+  RootPlace cell_;
   std::vector<std::string> tips_;  // per instrument, if they see several: the one that it sees
   std::vector<std::string> frame_names_, target_names_;
   std::vector<Eigen::Vector3d> targets_;  // tip frame

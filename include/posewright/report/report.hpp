@@ -70,6 +70,8 @@ struct Report {
   std::vector<std::string> notes;     ///< what the reader should know before trusting it
   std::string plan_json, route_json;  ///< as their files are; route empty: none
   std::vector<std::string> frames;    ///< the first is fixed
+  int cell_frame = 0;                 ///< index into frames: carries the cell, in which obstacles have their positions
+  Eigen::Isometry3d X_FrameCell = Eigen::Isometry3d::Identity();
   std::vector<ReportBody> bodies;
   std::vector<std::pair<std::string, Eigen::Isometry3d>> stations;
   std::vector<std::string> targets;

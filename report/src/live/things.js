@@ -8,7 +8,7 @@ import { documentOf, metres, withEntry, withoutEntry, withValue, written } from 
  * @property {string} label
  * @property {'instrument'|'cell'} step of the page
  * @property {import('./yaml_edit.js').Path} path of its position
- * @property {number[]} position m, measurement frame
+ * @property {number[]} position m, in the frame of the file: instruments in the measurement frame, bodies in the cell's
  * @property {string} [body] drawn under this name
  * @property {string} [station] whose body it is
  * @property {import('./yaml_edit.js').Path} [entry] in the list of obstacles

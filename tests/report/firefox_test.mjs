@@ -2,7 +2,7 @@
 // The page that plans in Debian's Firefox: from an empty page and a URDF as vendors write them (meshes of a package, loose beside
 // it) to a KRL program. Returns 77 where the program for pages or Firefox is missing.
 import { execFileSync } from 'node:child_process';
-import { existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdirSync, readFileSync, readdirSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { parseArgs } from 'node:util';
@@ -101,7 +101,8 @@ await shot(page, 'plan');
 await step(page, /Take away/);
 await page.getByRole('button', { name: 'Write the program' }).click();
 await page.waitForFunction(() => /Saved/.test(document.querySelector('#step-4 .busy').textContent));
-const there = () => readdirSync(saved).filter((name) => /\.(src|dat)$/.test(name)).sort();
+// Firefox makes an empty file first, and fills it later.
+const there = () => readdirSync(saved).filter((name) => /\.(src|dat)$/.test(name) && statSync(join(saved, name)).size > 0).sort();
 for (let k = 0; k < 100 && there().length < 2; k++) await page.waitForTimeout(200);
 check(there().join() === 'CALPOSES.dat,CALPOSES.src', 'a KRL program is exported', there());
 const points = there().includes('CALPOSES.src') ? (readFileSync(join(saved, 'CALPOSES.src'), 'utf8').match(/^\s*PTP /gm) ?? []) : [];

@@ -251,7 +251,7 @@ TEST(Pose, SomeOfItsAnglesAreThoseOfTheSmallRotationFromTheNominalOrientation) {
     std::vector<double> correction(model.parameters().size());
     for (double& c : correction) c = 1e-6 * random.uniform(-1, 1);
     Eigen::VectorXd y;
-    ASSERT_TRUE(model.read(q, correction, y));
+    ASSERT_TRUE(model.predict(q, correction, y));
     const std::vector<Jet> expected = oracle(q, {correction.begin(), correction.end()});
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(y[i], expected[std::size_t(i)].a, 1e-15) << i;
   }

@@ -1,11 +1,13 @@
 #include "measure_plane.hpp"
 
+#include <numbers>
+
 namespace posewright {
 namespace {
 
-constexpr double probe_tolerance = 1e-3;    // m
-constexpr double offset_tolerance = 10e-3;  // m, of what was placed by hand
-constexpr double tilt_tolerance = 0.0175;   // rad
+constexpr double probe_tolerance = 1e-3;                   // m
+constexpr double offset_tolerance = 10e-3;                 // m, of what was placed by hand
+constexpr double tilt_tolerance = std::numbers::pi / 180;  // rad
 enum Own { probe_x, offset = 3, tilt_u, tilt_v };
 
 }  // namespace

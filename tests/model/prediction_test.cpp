@@ -69,7 +69,7 @@ TEST_P(Predictions, ChangeAsTheLinearisationSays) {
     ASSERT_EQ(int(model->readings().size()), model->rows());
     Random random(7, 1);
     int seen = 0;
-    for (int i = 0; i < 400 && seen < 8; ++i) {
+    for (int i = 0; i < 20000 && seen < 8; ++i) {
       const std::vector<double> q = random_configuration(*model, random);
       if (!model->measurable(q)) continue;
       const double worst = worst_column(*model, q, random_corrections(*model, 0.3, random));

@@ -71,7 +71,7 @@ const BadFile root[] = {
 
 const BadFile serial_robot[] = {
     {"RobotKeyUnknown", arm, "base: base_link", "bse: base_link", 4,
-     "unknown key 'bse' (did you mean 'base'?); allowed: urdf, xacro, srdf, group, base, tip, hold, placement, "
+     "unknown key 'bse' (did you mean 'base'?); allowed: urdf, xacro, srdf, group, base, tip, tips, hold, placement, "
      "encoder_noise, parameter_names, "
      "elastostatic"},
     {"RobotKeyTwice", arm, "tip: flange", "base: flange", 5, "duplicate key 'base'; first given on line 4"},
@@ -128,9 +128,9 @@ const BadFile measurements[] = {
      "joints"},
     {"MeasurementKindMissing", arm, "  type: points\n", "", 9, "measurement has no key 'type'"},
     {"TargetsForPose", arm, "type: points", "type: pose", 11,
-     "unknown key 'targets'; allowed: type, name, mount, components, device, repeats, repeatability, load"},
+     "unknown key 'targets'; allowed: type, name, of, in, mount, components, device, repeats, repeatability, load"},
     {"TargetsForPosition", arm, "type: points", "type: position", 11,
-     "unknown key 'targets' (did you mean 'target'?); allowed: type, name, target,"},
+     "unknown key 'targets' (did you mean 'target'?); allowed: type, name, of, in, target,"},
     {"TargetTwice", arm, "    P2:", "    P1:", 13, "duplicate key 'P1'; first given on line 12"},
     {"TargetTooShort", arm, "[0.27649, -0.04825, 0.09405]", "[1, 2]", 13, "P2 has 2 entries; expected 3 numbers"},
     {"TargetNameGlob", arm, "    P2:", "    'P*':", 13, "a plain name is expected"},

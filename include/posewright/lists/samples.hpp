@@ -14,8 +14,8 @@ struct Samples {
   std::optional<bool> on_hand;  ///< the camera is, by the file; none: the file does not say
 };
 
-/// Reads what easy_handeye2, MoveIt Calibration and cv::FileStorage save (YAML). None if the text is of neither. Throws InputError with
-/// file and line.
+/// Reads what easy_handeye2, MoveIt Calibration and cv::FileStorage save (YAML). None if the text is of neither. Throws
+/// InputError with file and line.
 std::optional<Samples> read_samples(const std::string& text, const std::string& file);
 /// The table of these samples, else of CSV.
 PoseTable samples_or_csv(const std::string& text, const std::string& file);

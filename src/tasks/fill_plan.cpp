@@ -252,10 +252,9 @@ void fill_instruments(Plan& plan, const Study& study, const Configurations& chos
   const MeasurementSpec& measurement = study.problem->measurement;
   const std::vector<MeasurementSpec>* instruments = instruments_of(measurement);
   if (instruments == nullptr || chosen.count() == 0) return;
+  const std::size_t instrument = *instrument_index(study.first().model->coordinates());
   std::vector<int> reads;
-  for (std::size_t i = 0; i < chosen.count(); ++i)
-    reads.push_back(
-        int(&instrument_at(measurement, study.first().model->coordinates(), chosen[i]) - instruments->data()));
+  for (std::size_t i = 0; i < chosen.count(); ++i) reads.push_back(int(chosen[i][instrument]));
   const std::vector<double> shares = measure.shares(search_parts(study, study.criterion, chosen, study.planner.threads),
                                                     reads, int(instruments->size()));
   plan.prior_share = shares.back();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 #include "fill_plan.hpp"
@@ -58,10 +59,10 @@ class PlanSearch {
     request.proof = study_.proof;
     SearchResult found = search(search_parts(study_, study_.criterion, study_.configurations, study_.planner.threads),
                                 request, monitor_);
-    if (!study_.robust) return assemble(found);
+    if (!study_.robust) return assemble(std::move(found));
     // Last, so that whoever stops it has the plan of the nominal robot.
     RobustPlan robust = plan_robust(study_, found, monitor_);
-    Plan plan = assemble(found);
+    Plan plan = assemble(std::move(found));
     plan.interrupted = plan.interrupted || robust.stopped;
     plan.robust = std::move(robust);
     return plan;
@@ -173,10 +174,10 @@ class PlanSearch {
     throw CannotDo(text);
   }
 
-  Plan assemble(const SearchResult& found) const {
+  Plan assemble(SearchResult found) const {
     // Judged from the configurations that will be written, not from anything the search kept.
-    const Members members = in_order_of_instruments(found);
-    const Configurations chosen = chosen_by(members.design, study_.configurations);
+    order_by_instrument(found);
+    const Configurations chosen = chosen_by(found.design, study_.configurations);
     const Configurations poses = with_fixed(chosen);
     const Judgement judgement = judge(study_, poses);
     Plan plan;
@@ -195,7 +196,7 @@ class PlanSearch {
       whole->within = proposed_within(*study_.first().workspace, *study_.first().model);
     // References of everything are none of the parameters'.
     if (!study_.first().nuisance_counts) fill_variants(plan, judgement, study_, found.references);
-    fill_poses(plan, study_, chosen, members.design.members, members.without, judgement);
+    fill_poses(plan, study_, chosen, found.design.members, found.without, judgement);
     fill_without_fixed(plan, chosen, found, phi);
     fill_instruments(plan, study_, chosen, *found.measure, phi, found.degree);
     fill_candidates(plan.statistics, study_);
@@ -212,25 +213,20 @@ class PlanSearch {
     return plan;
   }
 
-  struct Members {
-    Design design;
-    std::vector<double> without;  ///< of each
-  };
   /// Poses of one instrument stand together: whoever measures mounts it once.
-  Members in_order_of_instruments(const SearchResult& found) const {
-    Members members{found.design, found.without};
-    const MeasurementSpec& measurement = problem_.measurement;
-    if (instruments_of(measurement) == nullptr) return members;
+  void order_by_instrument(SearchResult& found) const {
+    const auto instrument = instrument_index(study_.first().model->coordinates());
+    if (!instrument) return;
     const Configurations chosen = chosen_by(found.design, study_.configurations);
-    std::vector<std::pair<const MeasurementSpec*, std::size_t>> order;
-    for (std::size_t i = 0; i < chosen.count(); ++i)
-      order.emplace_back(&instrument_at(measurement, study_.first().model->coordinates(), chosen[i]), i);
-    std::sort(order.begin(), order.end());  // of one array
-    for (std::size_t i = 0; i < order.size(); ++i) {
-      members.design.members[i] = found.design.members[order[i].second];
-      if (!found.without.empty()) members.without[i] = found.without[order[i].second];
-    }
-    return members;
+    std::vector<std::size_t> order(chosen.count());
+    std::iota(order.begin(), order.end(), 0);
+    std::ranges::stable_sort(order, {}, [&](std::size_t i) { return chosen[i][*instrument]; });
+    const auto ordered = [&](auto& of_each) {
+      const auto before = of_each;
+      for (std::size_t i = 0; i < of_each.size(); ++i) of_each[i] = before[order[i]];
+    };
+    ordered(found.design.members);
+    ordered(found.without);
   }
 
   void warn_of_lost_poses(Plan& plan, const Configurations& poses) const {

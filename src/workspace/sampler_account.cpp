@@ -34,11 +34,13 @@ std::string cure_of(const std::string& reason) {
 }  // namespace
 
 Sampler::Sampler(const Workspace& workspace, const SamplingOptions& options)
-    : workspace_(workspace), options_(options), reasons_(workspace.reasons()) {
+    : workspace_(workspace),
+      options_(options),
+      reasons_(workspace.reasons()),
+      instrument_(instrument_index(workspace.proposed())) {
   result_.dimension = int(workspace.proposed().size());
   for (std::size_t k = 0; k < workspace.proposed().size(); ++k)
     if (const Coordinate& c = workspace.proposed()[k]; !c.periodic && !c.discrete()) bounded_.push_back(k);
-    else if (c.choice() && c.name == instrument_coordinate) instrument_ = k;
   reasons_.push_back(out_of_reach_of_view);
   reasons_.push_back("drawn before");
   reasons_.push_back(passed_over_reason);

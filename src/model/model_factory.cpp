@@ -58,19 +58,22 @@ struct MakeTip {
 /// The arm on the way of each of the instruments, and which of the coordinates move there.
 class WaysOfInstruments {
  public:
+  using Readings = std::vector<std::unique_ptr<MeasurementModel>>;
+
+  /// @param readings  of each instrument
   WaysOfInstruments(const SerialArmSpec& arm, const ProblemVariant& variant,
-                    const std::vector<MeasurementSpec>& instruments)
+                    const std::vector<MeasurementSpec>& instruments, const Readings& readings)
       : arm_(arm), problem_(variant.problem), chains_(read_urdf_ways(arm, variant.problem.at(arm.line))) {
     if (variant.spec.convention != VariantSpec::Convention::frames)
       throw CannotDo("variant '" + variant.spec.name + "': parameters dh and mdh are those of one way alone");
     tools_.assign(arm.ways.size(), 0);
-    for (const MeasurementSpec& instrument : instruments)
-      if (!make_measurement(instrument)->replaces_tool()) tools_[way_of(arm, instrument)] = 1;
+    for (std::size_t k = 0; k < instruments.size(); ++k)
+      if (!readings[k]->replaces_tool()) tools_[way_of(arm, instruments[k])] = 1;
   }
 
-  std::unique_ptr<TipModel> of(const MeasurementSpec& instrument, std::vector<char>& moving) const {
-    auto chain = std::make_unique<ForkedChain>(chains_, way_of(arm_, instrument), tools_,
-                                               !make_measurement(instrument)->replaces_tool());
+  std::unique_ptr<TipModel> of(const MeasurementSpec& instrument, const MeasurementModel& readings,
+                               std::vector<char>& moving) const {
+    auto chain = std::make_unique<ForkedChain>(chains_, way_of(arm_, instrument), tools_, !readings.replaces_tool());
     moving = chain->moving();
     if (arm_.joint_effects.empty()) return chain;
     auto with_effects = std::make_unique<JointEffects>(std::move(chain), arm_, problem_.file.string());
@@ -88,15 +91,17 @@ class WaysOfInstruments {
 std::unique_ptr<IdentificationModel> seen_by_each(const ProblemVariant& variant,
                                                   const std::vector<MeasurementSpec>& instruments) {
   const auto* arm = std::get_if<SerialArmSpec>(&variant.problem.robot);
+  WaysOfInstruments::Readings readings;
+  for (const MeasurementSpec& one : instruments) readings.push_back(make_measurement(one));
   std::optional<WaysOfInstruments> ways;
-  if (arm != nullptr && !arm->ways.empty()) ways.emplace(*arm, variant, instruments);
+  if (arm != nullptr && !arm->ways.empty()) ways.emplace(*arm, variant, instruments, readings);
   std::vector<std::unique_ptr<ExplicitModel>> models;
   std::vector<std::string> names;
   std::vector<std::vector<char>> moving(ways ? instruments.size() : 0);
   for (std::size_t k = 0; k < instruments.size(); ++k) {
     const MeasurementSpec& one = instruments[k];
-    models.push_back(std::make_unique<ExplicitModel>(ways ? ways->of(one, moving[k]) : make_tip(variant),
-                                                     make_measurement(one), one.repeatability));
+    auto tip = ways ? ways->of(one, *readings[k], moving[k]) : make_tip(variant);
+    models.push_back(std::make_unique<ExplicitModel>(std::move(tip), std::move(readings[k]), one.repeatability));
     names.push_back(one.name);
   }
   return std::make_unique<InstrumentChoice>(std::move(models), names, std::move(moving));

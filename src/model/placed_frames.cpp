@@ -1,11 +1,8 @@
 #include "posewright/model/placed_frames.hpp"
 
 #include <algorithm>
-#include <array>
-#include <optional>
 #include <string_view>
 
-#include "displacement.hpp"
 #include "posewright/model/forked_chain.hpp"
 #include "posewright/model/instrument_view.hpp"
 #include "posewright/model/nominal_placement.hpp"
@@ -17,30 +14,17 @@ namespace {
 
 constexpr const char* placement_key = "robot: placement";
 
-/// Displacement by the six parameters of that name; nothing where there are none.
-std::optional<Eigen::Isometry3d> displacement_by(const std::vector<CalibratedValue>& values, const std::string& name) {
-  std::array<double, 6> d{};
-  bool any = false;
-  for (std::size_t k = 0; k < d.size(); ++k)
-    for (const CalibratedValue& v : values)
-      if (v.name == name + "." + displacement_names[k]) {
-        d[k] = v.correction();
-        any = true;
-      }
-  if (!any) return std::nullopt;
-  Frame<double> frame;
-  frame.then_displace(d.data());
-  return isometry_of(frame);
+bool has_frame(const std::vector<Parameter>& parameters, const std::string& name) {
+  return std::ranges::any_of(parameters, [&](const Parameter& p) { return p.name.starts_with(name + "."); });
 }
 
 /// Of an arm with several tips: the base of each measurement frame, and each tip whose pose is read.
-std::vector<PlacedFrame> frames_of_ways(const SerialArmSpec& arm, const std::vector<CalibratedValue>& values) {
+std::vector<PlacedFrame> frames_of_ways(const SerialArmSpec& arm, const std::vector<Parameter>& at) {
   std::vector<PlacedFrame> frames;
   const auto add = [&](const std::string& name, const std::string& key, const std::string& in,
                        const Eigen::Isometry3d& nominal) {
-    const auto X = displacement_by(values, name);
-    if (X && std::ranges::find(frames, name, &PlacedFrame::name) == frames.end())
-      frames.push_back({name, key, in, nominal * *X});
+    if (has_frame(at, name) && std::ranges::find(frames, name, &PlacedFrame::name) == frames.end())
+      frames.push_back({name, key, in, nominal_placement(at, name, nominal)});
   };
   for (const WaySpec& way : arm.ways)
     add(base_name(way), way.in ? "" : placement_key, "measurement",
@@ -51,8 +35,8 @@ std::vector<PlacedFrame> frames_of_ways(const SerialArmSpec& arm, const std::vec
 
 /// Base and tool of a serial arm. Denavit–Hartenberg parameters displace them about frames of their own.
 std::vector<PlacedFrame> frames_of(const SerialArmSpec& arm, const ProblemVariant& variant,
-                                   const std::vector<CalibratedValue>& values, const std::vector<Parameter>&) {
-  if (!arm.ways.empty()) return frames_of_ways(arm, values);
+                                   const std::vector<CalibratedValue>& values, const std::vector<Parameter>& at) {
+  if (!arm.ways.empty()) return frames_of_ways(arm, at);
   const ChainDescription chain = read_urdf_chain(arm, variant.problem.at(arm.line));
   const ChainCorrection correction = chain_correction(chain, variant.spec.convention, values);
   return {{"base", placement_key, "measurement", chain.X_MeasureBase * correction.base.X},
@@ -80,10 +64,6 @@ std::vector<PlacedFrame> frames_of(const GivenPosesSpec& robot, const ProblemVar
   return frames;
 }
 
-bool has_tool(const std::vector<Parameter>& parameters) {
-  return std::ranges::any_of(parameters, [](const Parameter& p) { return p.name.starts_with("tool."); });
-}
-
 std::string key_of(const std::string& prefix) {
   constexpr std::string_view station = "station.";
   if (prefix.starts_with(station)) return "measurement: device: stations: " + prefix.substr(station.size());
@@ -98,7 +78,7 @@ std::vector<PlacedFrame> placed_frames(const ProblemVariant& variant, const std:
   for (const CalibratedValue& v : values) at.push_back({v.name, v.unit, v.value, 0.0, Role::interest});
   std::vector<PlacedFrame> frames =
       std::visit([&](const auto& robot) { return frames_of(robot, variant, values, at); }, variant.problem.robot);
-  if (!has_tool(at)) std::erase_if(frames, [](const PlacedFrame& frame) { return frame.name == "tool"; });
+  if (!has_frame(at, "tool")) std::erase_if(frames, [](const PlacedFrame& frame) { return frame.name == "tool"; });
   const InstrumentView view = view_of(variant.problem.measurement);
   if (view.has_places)
     for (const InstrumentView::Place& place : view.places)

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "posewright/model/urdf_reader.hpp"
+#include "posewright/problem/ways.hpp"
 #include "urdf_document.hpp"
 
 namespace posewright {
@@ -30,10 +31,7 @@ SerialArmSpec arm_of_way(const SerialArmSpec& arm, const WaySpec& way) {
 }
 
 std::size_t way_of(const SerialArmSpec& arm, const MeasurementSpec& instrument) {
-  const auto own = std::ranges::find_if(arm.ways, [&](const WaySpec& way) {
-    return way.of.name == instrument.of->value && way.in.has_value() == instrument.in.has_value() &&
-           (!way.in || way.in->name == instrument.in->value);
-  });
+  const auto own = std::ranges::find_if(arm.ways, [&](const WaySpec& way) { return measures(instrument, way); });
   return std::size_t(own - arm.ways.begin());
 }
 

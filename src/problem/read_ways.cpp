@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "posewright/problem/ways.hpp"
 #include "posewright/support/near_words.hpp"
 #include "posewright/support/text.hpp"
 #include "sections.hpp"
@@ -80,11 +81,8 @@ class WaysReader {
                        "another tip, or none for the robot's base");
     if (instrument.in) way.in = tip_named(*instrument.in, "in");
     else from_base_ = true;
-    const auto same = [&](const WaySpec& other) {
-      return other.of.name == way.of.name && other.in.has_value() == way.in.has_value() &&
-             (!way.in || other.in->name == way.in->name);
-    };
-    if (std::ranges::none_of(ways_, same)) ways_.push_back(std::move(way));
+    if (std::ranges::none_of(ways_, [&](const WaySpec& known) { return measures(instrument, known); }))
+      ways_.push_back(std::move(way));
   }
 
   void place_tools() const {
@@ -141,6 +139,11 @@ class WaysReader {
 };
 
 }  // namespace
+
+bool measures(const MeasurementSpec& instrument, const WaySpec& way) {
+  return way.of.name == instrument.of->value && way.in.has_value() == instrument.in.has_value() &&
+         (!way.in || way.in->name == instrument.in->value);
+}
 
 void read_ways(const Section& root, Problem& problem) {
   const Section robot(root.at("robot"));

@@ -58,7 +58,7 @@ assert (described.get("format"), described.findtext("name"), described.findtext(
 assert described.findtext("export/build_type") == "cmake"
 
 # What a user has who sources the workspace: program, Python package, consumer, node.
-script = (f". {scratch}/install/setup.sh && posewright --version && python3 -c 'import posewright as pw; print(pw.__file__)' && "
+script = (f". {scratch}/install/setup.sh && posewright --version | head -n 1 && python3 -c 'import posewright as pw; print(pw.__file__)' && "
           f"{scratch}/install/posewright_consumer/lib/posewright_consumer/consumer && echo && "
           f"test -x {scratch}/install/posewright_measure/lib/posewright_measure/measure && python3 -c 'import posewright_measure.stops as s; print(s.__file__)'")
 done = subprocess.run(["sh", "-c", script], cwd=scratch, env=clean, capture_output=True, text=True)

@@ -41,7 +41,7 @@ class Enumeration {
       const double value = task_.criterion->of_information_alone()
                                ? task_.criterion->function().value(information)
                                : task_.criterion->start(task_.candidates, members_)->value();
-      if (value <= best_.value + equal_values || !apart()) return true;
+      if (value <= best_.value + equal_values || !allowed()) return true;
       best_.value = value;
       best_.members = members_;
       return true;
@@ -57,13 +57,7 @@ class Enumeration {
     return true;
   }
 
-  bool apart() const {
-    if (task_.candidates.spacing == nullptr) return true;
-    for (std::size_t i = 0; i < members_.size(); ++i)
-      for (std::size_t j = 0; j < i; ++j)
-        if (task_.candidates.spacing->too_near(members_[i], members_[j])) return false;
-    return true;
-  }
+  bool allowed() const { return task_.candidates.spacing == nullptr || task_.candidates.spacing->allows(members_); }
 
   const DesignTask& task_;
   const Monitor& monitor_;

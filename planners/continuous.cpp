@@ -57,11 +57,17 @@ class OnePose : public BlockObjective {
   Eigen::MatrixXd rest_, sum_, gradient_;
 };
 
-bool is_apart(const DesignTask& task, const PoseSet& poses, std::size_t i, std::span<const double> q) {
-  if (task.space->spacing().unit.size() == 0) return true;
-  for (std::size_t j = 0; j < poses.configurations.size(); ++j)
-    if (j != i && task.space->spacing().too_near(poses.configurations[j], q)) return false;
-  return true;
+/// True if pose i may go to q: far enough from the others, and within the limit of its choice.
+bool may_move(const DesignTask& task, const PoseSet& poses, std::size_t i, std::span<const double> q) {
+  const Spacing& spacing = task.space->spacing();
+  const auto chosen = [&](std::span<const double> at) { return at[std::size_t(spacing.limited)]; };
+  int alike = 0;
+  for (std::size_t j = 0; j < poses.configurations.size(); ++j) {
+    if (j == i) continue;
+    if (spacing.too_near(poses.configurations[j], q)) return false;
+    alike += !spacing.most.empty() && chosen(poses.configurations[j]) == chosen(q);
+  }
+  return spacing.most.empty() || alike < spacing.most[std::size_t(chosen(q))];
 }
 
 /// All poses at once on the unit box.
@@ -116,7 +122,7 @@ class Joint {
 
   bool valid() {
     for (std::size_t i = 0; i < now_.configurations.size(); ++i)
-      if (!probe_->feasible(now_.configurations[i]) || !is_apart(task_, now_, i, now_.configurations[i])) return false;
+      if (!probe_->feasible(now_.configurations[i]) || !may_move(task_, now_, i, now_.configurations[i])) return false;
     return true;
   }
 
@@ -260,7 +266,7 @@ class InTurn {
       if (moves > 0) {
         const double promised = found[k].value - before;
         found[k].value = value_with(i, found[k].q, *probes_[k]);
-        if (!(found[k].value - poses_.value > 0.5 * promised) || !is_apart(task_, poses_, i, found[k].q))
+        if (!(found[k].value - poses_.value > 0.5 * promised) || !may_move(task_, poses_, i, found[k].q))
           found[k] = ascent(i, information_of(task_, poses_.blocks), *probes_[k]);
       }
       moves += take(i, found[k], *probes_[k]);
@@ -271,7 +277,7 @@ class InTurn {
   AscentResult ascent(std::size_t i, const Eigen::MatrixXd& M, ConfigurationSpace::Probe& probe) const {
     const auto block = poses_.blocks.block(i);
     OnePose objective(task_.criterion->function(), M - block.transpose() * block);
-    const auto accept = [&](std::span<const double> q) { return is_apart(task_, poses_, i, q); };
+    const auto accept = [&](std::span<const double> q) { return may_move(task_, poses_, i, q); };
     const auto from = [&](std::vector<double> start) {
       return ascend(*task_.space, probe, objective, poses_.blocks.rows(), poses_.blocks.columns(), std::move(start),
                     evaluations_per_pose, accept);

@@ -187,10 +187,17 @@ std::unique_ptr<DesignTree::Node> DesignTree::look_into(ChoiceBox box, std::vect
   return std::make_unique<Node>(Node{std::move(box), std::move(relaxed)});
 }
 
-/// Takes away candidates that are too near to chosen ones; false if two chosen ones are too near to each other.
+/// Takes away candidates that chosen ones forbid; false if two chosen ones are too near to each other, or more are
+/// chosen than a limit allows.
 bool DesignTree::settle_spacing(ChoiceBox& box) const {
   const Spacing* spacing = task_.candidates.spacing;
   if (spacing == nullptr) return true;
+  std::vector<int> free = spacing->most;
+  for (std::size_t i = 0; i < box.least.size() && !free.empty(); ++i)
+    if ((free[spacing->value_at(int(i))] -= box.least[i]) < 0) return false;
+  for (std::size_t i = 0; i < box.least.size() && !free.empty(); ++i)
+    box.most[i] = std::uint16_t(std::min<int>(box.most[i], box.least[i] + free[spacing->value_at(int(i))]));
+  if (!spacing->keeps_distance()) return true;
   for (std::size_t i = 0; i < box.least.size(); ++i) {
     if (box.least[i] == 0) continue;
     for (std::size_t j = 0; j < box.least.size(); ++j) {
@@ -216,10 +223,7 @@ bool DesignTree::leaf(const ChoiceBox& box, Design& best) const {
 }
 
 void DesignTree::offer(std::vector<int> members, Design& best) const {
-  if (const Spacing* spacing = task_.candidates.spacing)
-    for (std::size_t i = 0; i < members.size(); ++i)
-      for (std::size_t j = 0; j < i; ++j)
-        if (members[i] != members[j] && spacing->too_near(members[i], members[j])) return;
+  if (const Spacing* spacing = task_.candidates.spacing; spacing != nullptr && !spacing->allows(members)) return;
   const double value = task_.criterion->start(task_.candidates, members)->value();
   if (value <= best.value) return;
   best.value = value;

@@ -17,8 +17,8 @@ ExtendedTask::ExtendedTask(const DesignTask& task, std::vector<int> kept, std::v
   task_.approximate = &approximate_;
   task_.space = nullptr;
   task_.workspace = nullptr;
-  if (spacing_.unit.size() == 0) return;
-  spacing_.points.resize(Eigen::Index(blocks_.count()), spacing_.unit.size());
+  if (!spacing_.keeps_distance() && spacing_.most.empty()) return;
+  spacing_.points.resize(Eigen::Index(blocks_.count()), Eigen::Index(configuration(*task.space, 0).size()));
   for (std::size_t i = 0; i < blocks_.count(); ++i) {
     const auto q = configuration(*task.space, int(i));
     std::copy(q.begin(), q.end(), spacing_.points.row(Eigen::Index(i)).data());

@@ -51,8 +51,7 @@ void add_apart(const DesignTask& task, std::vector<int>& kept) {
                    [&](int a, int b) { return sensitivity[std::size_t(a)] > sensitivity[std::size_t(b)]; });
   for (const int i : order) {
     if (int(apart.size()) >= 3 * task.poses) break;
-    if (std::none_of(apart.begin(), apart.end(), [&](int j) { return task.candidates.spacing->too_near(i, j); }))
-      apart.push_back(i);
+    if (task.candidates.spacing->admits(apart, i)) apart.push_back(i);
   }
   kept.insert(kept.end(), apart.begin(), apart.end());
 }
@@ -115,8 +114,7 @@ void ReducedTask::keep(const DesignTask& task, std::vector<int> kept) {
   // Configurations are those of the whole task; a planner that needs them works on that.
   task_.space = nullptr;
   if (task.candidates.spacing == nullptr) return;
-  spacing_ = {task.candidates.spacing->unit, task.candidates.spacing->period};
-  spacing_.points = task.candidates.spacing->points(kept_, Eigen::all);
+  spacing_ = task.candidates.spacing->of(kept_);
   task_.candidates.spacing = &spacing_;
 }
 

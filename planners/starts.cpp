@@ -18,9 +18,7 @@ class Selection {
   bool add(int candidate) {
     int& used = used_[candidate];
     if (full() || used >= task_.candidates.max_repeats) return false;
-    if (const Spacing* spacing = task_.candidates.spacing; spacing != nullptr)
-      for (const int other : members_)
-        if (spacing->too_near(other, candidate)) return false;
+    if (task_.candidates.spacing != nullptr && !task_.candidates.spacing->admits(members_, candidate)) return false;
     ++used;
     members_.push_back(candidate);
     return true;
@@ -33,7 +31,7 @@ class Selection {
       while (add((first + i) % n)) continue;
     if (!full())
       throw CannotDo("only " + std::to_string(members_.size()) + " of " + std::to_string(task_.poses) +
-                     " poses were found at the minimum distance from each other");
+                     " poses were found at the minimum distance from each other and within the limits");
   }
   std::vector<int> take() { return std::move(members_); }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "posewright/model/instrument_choice.hpp"
 #include "posewright/model/model_factory.hpp"
 #include "posewright/model/pair_names.hpp"
 #include "posewright/model/variant_columns.hpp"
@@ -12,23 +13,25 @@ namespace {
 
 /// An instrument does not stand in a wall. The ways out of its own body are not judged.
 void check_stations(const Problem& problem, const Cell& cell) {
-  if (cell.collision == nullptr || cell.sight == nullptr || !cell.sight_is_asked) return;
+  if (cell.collision == nullptr || !cell.sight_is_asked()) return;
   const std::vector<double> home = home_configuration(problem.workspace.motion, problem, cell.model->coordinates());
-  for (std::size_t s = 0; s < cell.sight->stations().size(); ++s) {
-    const std::string& name = cell.sight->stations()[s];
-    const std::string in = cell.collision->inside(home, cell.sight->X_MeasureStation(home, int(s)).translation(), name);
-    if (!in.empty())
-      throw StationInside(problem.at(problem.workspace.line_of_sight->line), "station " + name + " stands inside " + in,
-                          "move it, or give its own body the key station: " + name);
-  }
+  for (const auto& sight : cell.sights)
+    for (std::size_t s = 0; sight != nullptr && sight->judges() && s < sight->stations().size(); ++s) {
+      const std::string& name = sight->stations()[s];
+      const std::string in = cell.collision->inside(home, sight->X_MeasureStation(home, int(s)).translation(), name);
+      if (!in.empty())
+        throw StationInside(problem.at(sight->line()), "station " + name + " stands inside " + in,
+                            "move it, or give its own body the key station: " + name);
+    }
 }
 
 void check_body_stations(const CollisionSpec& spec, const ProblemFile& file, const Cell& cell) {
   const auto check = [&](const BodySpec& body) {
     if (body.station.empty()) return;
     std::string names;
-    if (cell.sight != nullptr)
-      for (const std::string& name : cell.sight->stations()) {
+    for (const auto& sight : cell.sights)
+      for (std::size_t s = 0; sight != nullptr && s < sight->stations().size(); ++s) {
+        const std::string& name = sight->stations()[s];
         if (name == body.station) return;
         names += (names.empty() ? "allowed: " : ", ") + name;
       }
@@ -87,9 +90,9 @@ std::shared_ptr<const Cell> make_cell(const Problem& problem, const Cell* same_r
   if (problem.workspace.collision)
     cell->collision = std::make_unique<Collision>(problem, *cell->model,
                                                   same_robot == nullptr ? nullptr : same_robot->collision.get());
-  cell->sight = LineOfSight::make(problem, *cell->model, cell->collision.get());
+  cell->sights = lines_of_sight(problem, *cell->model, cell->collision.get());
+  cell->instrument = instrument_index(cell->model->coordinates());
   cell->joint_margin = joint_margins(variant, *cell->model);
-  cell->sight_is_asked = problem.workspace.line_of_sight.has_value();
   if (problem.workspace.collision) check_body_stations(*problem.workspace.collision, problem, *cell);
   check_stations(problem, *cell);
   return cell;

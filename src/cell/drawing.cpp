@@ -159,9 +159,9 @@ void Drawing::add_instrument(const MeasurementSpec& measurement, const Cell& cel
                           {}};
     for (const InstrumentView::Point& point : view.points) camera_->points.emplace_back(point.name, point.position);
   }
-  if (cell.sight == nullptr || cell.sight->rides_on_tip()) return;
-  for (std::size_t s = 0; s < cell.sight->stations().size(); ++s)
-    stations_.emplace_back(cell.sight->stations()[s], cell.sight->X_MeasureStation({}, int(s)));
+  for (const auto& sight : cell.sights)
+    for (std::size_t s = 0; sight != nullptr && !sight->rides_on_tip() && s < sight->stations().size(); ++s)
+      stations_.emplace_back(sight->stations()[s], sight->X_MeasureStation({}, int(s)));
 }
 
 DrawnPose Drawing::at(std::span<const double> q) const {

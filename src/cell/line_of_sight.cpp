@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "posewright/cell/collision.hpp"
+#include "posewright/model/campaigns.hpp"
 #include "posewright/model/nominal_placement.hpp"
 #include "posewright/model/placement.hpp"
 #include "posewright/support/dense.hpp"
@@ -47,38 +48,63 @@ LineOfSight::Looked& LineOfSight::looked_at(std::span<const double> q) const {
   return looked;
 }
 
-std::unique_ptr<LineOfSight> LineOfSight::make(const Problem& problem, const IdentificationModel& model,
-                                               const Collision* collision) {
-  if (problem.workspace.line_of_sight) require_one_instrument(problem, "workspace.line_of_sight");
-  std::unique_ptr<LineOfSight> sight(new LineOfSight(problem, model, collision));
-  const auto& asked = problem.workspace.line_of_sight;
+std::unique_ptr<LineOfSight> LineOfSight::make(const ProblemFile& file, const MeasurementSpec& instrument,
+                                               const std::optional<LineOfSightSpec>& asked,
+                                               const IdentificationModel& model, const Collision* collision) {
+  std::unique_ptr<LineOfSight> sight(new LineOfSight(file, instrument, asked, model, collision));
   if (!asked) return sight->station_names_.empty() ? nullptr : std::move(sight);
+  const std::string key = instrument.name.empty() ? "workspace.line_of_sight" : instrument.name + ": line_of_sight";
   if (sight->station_names_.empty())
-    throw InputError(problem.at(asked->line), "workspace.line_of_sight: the instrument has no position",
+    throw InputError(file.at(asked->line), key + ": the instrument has no position",
                      "measurement.device.stations are needed (line_of_sight.stations for photogrammetry of a pose)");
   if (sight->targets_.empty())
-    throw InputError(problem.at(asked->line), "workspace.line_of_sight: the instrument has no targets to be seen",
+    throw InputError(file.at(asked->line), key + ": the instrument has no targets to be seen",
                      "line_of_sight is for points, position, camera, and pose by photogrammetry");
   if (sight->all_stations_ && asked->visible > 0 && asked->visible < sight->targets())
-    throw InputError(problem.at(asked->line), "workspace.line_of_sight.visible is " + std::to_string(asked->visible),
+    throw InputError(file.at(asked->line), key + ".visible is " + std::to_string(asked->visible),
                      "a pose is fitted to all its points: visible: all");
   if (asked->visible > sight->targets())
-    throw InputError(problem.at(asked->line), "workspace.line_of_sight.visible is " + std::to_string(asked->visible),
+    throw InputError(file.at(asked->line), key + ".visible is " + std::to_string(asked->visible),
                      "there are " + std::to_string(sight->targets()) + " targets");
   return sight;
 }
 
-LineOfSight::LineOfSight(const Problem& problem, const IdentificationModel& model, const Collision* collision)
-    : spec_(problem.workspace.line_of_sight.value_or(LineOfSightSpec{})),
+std::vector<std::unique_ptr<const LineOfSight>> lines_of_sight(const Problem& problem, const IdentificationModel& model,
+                                                               const Collision* collision) {
+  std::vector<std::unique_ptr<const LineOfSight>> sights;
+  const auto& asked = problem.workspace.line_of_sight;
+  const std::vector<MeasurementSpec>* instruments = instruments_of(problem.measurement);
+  if (instruments == nullptr) {
+    sights.push_back(LineOfSight::make(problem, problem.measurement, asked, model, collision));
+    return sights;
+  }
+  if (asked)
+    throw InputError(problem.at(asked->line), "workspace.line_of_sight stands beside a list of instruments",
+                     "each instrument has its own key line_of_sight");
+  for (const MeasurementSpec& one : *instruments) {
+    if (one.line_of_sight && !model.moving_coordinates().empty())
+      throw InputError(problem.at(one.line_of_sight->line), "line_of_sight with several tips",
+                       "base and tip in place of tips");
+    sights.push_back(model.moving_coordinates().empty()
+                         ? LineOfSight::make(problem, one, one.line_of_sight, model, collision)
+                         : nullptr);
+  }
+  return sights;
+}
+
+LineOfSight::LineOfSight(const ProblemFile& file, const MeasurementSpec& instrument,
+                         const std::optional<LineOfSightSpec>& asked, const IdentificationModel& model,
+                         const Collision* collision)
+    : spec_(asked.value_or(LineOfSightSpec{})),
       model_(model),
       // What nobody asked for is not judged: places only.
-      collision_(problem.workspace.line_of_sight ? collision : nullptr),
-      judges_(problem.workspace.line_of_sight.has_value()) {
+      collision_(asked ? collision : nullptr),
+      judges_(asked.has_value()) {
   static std::atomic<std::uint64_t> made{0};
   number_ = ++made;
-  const InstrumentView view = view_of(problem.measurement);
+  const InstrumentView view = view_of(instrument);
   if (view.has_places && !spec_.stations.empty())
-    throw InputError(problem.at(spec_.line),
+    throw InputError(file.at(spec_.line),
                      "workspace.line_of_sight.stations cannot be combined with stations of the device",
                      "stations of trackers belong to measurement.device");
   all_stations_ = view.all_places;
@@ -88,30 +114,41 @@ LineOfSight::LineOfSight(const Problem& problem, const IdentificationModel& mode
   std::vector<InstrumentView::Place> places = view.places;
   for (const StationSpec& station : spec_.stations)
     places.push_back({station, "station." + station.name, "station " + station.name});
-  for (const InstrumentView::Place& place : places) add_station(place);
-  add_points(view);
+  for (const InstrumentView::Place& place : places) add_station(instrument, place);
+  add_points(instrument, view);
   for (std::size_t i = 0; i < model.coordinates().size(); ++i)
     if (model.coordinates()[i].choice() && model.coordinates()[i].name == "station") station_coordinate_ = int(i);
   for (const TargetSpec& reference : spec_.references)
     references_.push_back({reference.name, reference.position, std::nullopt});
-  add_normals(problem);
+  add_normals(file);
   take_necessary_places();
 }
 
-void LineOfSight::add_station(const InstrumentView::Place& place) {
-  station_names_.push_back(place.station.name);
-  X_CarrierStation_.push_back(
-      nominal_placement(model_.parameters(), place.parameters, isometry(place.station.placement)));
-  for (const char* reason : reason_names) reasons_.push_back(std::string(reason) + " " + place.words);
+namespace {
+
+/// Prefix of parameters as the model of a list has it.
+std::string in_list(const MeasurementSpec& instrument, const std::string& parameters) {
+  return instrument.name.empty() || parameters.empty() ? parameters : name_in(instrument.name, parameters);
 }
 
-void LineOfSight::add_points(const InstrumentView& view) {
+}  // namespace
+
+void LineOfSight::add_station(const MeasurementSpec& instrument, const InstrumentView::Place& place) {
+  station_names_.push_back(place.station.name);
+  X_CarrierStation_.push_back(
+      nominal_placement(model_.parameters(), in_list(instrument, place.parameters), isometry(place.station.placement)));
+  const std::string& words = instrument.name.empty() ? place.words : instrument.name;
+  for (const char* reason : reason_names) reasons_.push_back(std::string(reason) + " " + words);
+}
+
+void LineOfSight::add_points(const MeasurementSpec& instrument, const InstrumentView& view) {
   targets_on_tip_ = view.points_on_tip;
   if (!view.points_parameters.empty())
-    X_CarrierTarget_ = nominal_placement(model_.parameters(), view.points_parameters, isometry(view.points_at));
+    X_CarrierTarget_ =
+        nominal_placement(model_.parameters(), in_list(instrument, view.points_parameters), isometry(view.points_at));
   for (const InstrumentView::Point& point : view.points) {
     Eigen::Vector3d p = point.position;
-    if (!point.parameters.empty()) p = nominal_position(model_.parameters(), point.parameters, p);
+    if (!point.parameters.empty()) p = nominal_position(model_.parameters(), in_list(instrument, point.parameters), p);
     targets_.push_back({point.name, X_CarrierTarget_ * p, std::nullopt});
   }
 }

@@ -10,7 +10,10 @@ DesignState::DesignState(const CandidateView& view, std::vector<int> members)
       used_(view.blocks->count()),
       banned_(view.blocks->count()),
       blocked_(view.blocks->count()) {
-  if (view.spacing != nullptr) crowd_.resize(view.blocks->count());
+  if (view.spacing != nullptr && view.spacing->keeps_distance()) crowd_.resize(view.blocks->count());
+  if (view.spacing != nullptr) free_ = view.spacing->most;
+  // Nothing of a value may enter whose limit known poses have used up.
+  for (int i = 0; i < int(used_.size()) && !free_.empty(); ++i) judge(i);
   for (const int i : members_) count(i, 1);
 }
 
@@ -38,7 +41,7 @@ void DesignState::remove(int position) {
 
 Swap DesignState::best_swap(int position, double min_gain) {
   const int leave = members_[std::size_t(position)];
-  // Neighbours of the one that leaves become free; itself it would be no swap.
+  // Neighbours of the one that leaves become free, and its part of a limit; itself it would be no swap.
   if (view_.spacing != nullptr) count(leave, -1);
   const unsigned char was = std::exchange(blocked_[std::size_t(leave)], 1);
   const Swap swap = do_best_swap(position, min_gain);
@@ -55,13 +58,24 @@ void DesignState::ban(int candidate, bool banned) {
 void DesignState::judge(int candidate) {
   const auto i = std::size_t(candidate);
   const bool crowded = !crowd_.empty() && crowd_[i] > 0;
-  blocked_[i] = used_[i] >= view_.max_repeats || crowded || banned_[i] != 0 ? 1 : 0;
+  const bool limited = !free_.empty() && free_[view_.spacing->value_at(candidate)] <= 0;
+  blocked_[i] = used_[i] >= view_.max_repeats || crowded || limited || banned_[i] != 0 ? 1 : 0;
+}
+
+/// Judges those of its value again where the limit of these is reached or no longer reached.
+void DesignState::count_limit(int candidate, int change) {
+  const std::size_t value = view_.spacing->value_at(candidate);
+  const bool was_free = free_[value] > 0;
+  free_[value] -= change;
+  if (was_free == (free_[value] > 0)) return;
+  for (int j = 0; j < int(used_.size()); ++j)
+    if (view_.spacing->value_at(j) == value) judge(j);
 }
 
 void DesignState::count(int candidate, int change) {
   used_[std::size_t(candidate)] += change;
   judge(candidate);
-  if (view_.spacing == nullptr) return;
+  if (!free_.empty()) count_limit(candidate, change);
   for (int j = 0; j < int(crowd_.size()); ++j) {
     if (!view_.spacing->too_near(candidate, j)) continue;
     crowd_[std::size_t(j)] += change;

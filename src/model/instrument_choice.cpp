@@ -16,11 +16,11 @@ struct InstrumentChoice::Inside {
   std::vector<Eigen::Index> selected_at;  ///< where these are among all that are selected
 };
 
-InstrumentChoice::InstrumentChoice(std::vector<std::unique_ptr<ExplicitModel>> models,
-                                   const std::vector<std::string>& names, std::vector<std::vector<char>> moving) {
+InstrumentChoice::InstrumentChoice(std::vector<InstrumentOfList> instruments) {
   // Of the same robot: without tool.*, which are its last, where all targets stand for the tool.
-  const ExplicitModel& whole = **std::ranges::max_element(
-      models, {}, [](const std::unique_ptr<ExplicitModel>& model) { return model->tip_parameters(); });
+  const ExplicitModel& whole = *std::ranges::max_element(instruments, {}, [](const InstrumentOfList& one) {
+                                  return one.model->tip_parameters();
+                                })->model;
   parameters_.assign(whole.parameters().begin(), whole.parameters().begin() + whole.tip_parameters());
   for (const Preference& preference : whole.geometric_parameters())
     if (preference.parameter < whole.tip_parameters()) geometric_.push_back(preference);
@@ -28,26 +28,28 @@ InstrumentChoice::InstrumentChoice(std::vector<std::unique_ptr<ExplicitModel>> m
   actuators_ = whole.tip().actuators();
   tips_ = 1;
   tip_coordinates_ = coordinates_.size();
-  moving_coordinates_ = std::move(moving);
-  coordinates_.push_back(make_choice(instrument_coordinate, names));
-  for (std::size_t k = 0; k < models.size(); ++k) {
-    const ExplicitModel& model = *models[k];
+  std::vector<std::string> names;
+  for (InstrumentOfList& one : instruments) {
+    const ExplicitModel& model = *one.model;
+    names.push_back(one.name);
+    if (!one.moving.empty()) moving_coordinates_.push_back(std::move(one.moving));
     const int own = int(parameters_.size());
     for (const Preference& preference : model.geometric_parameters())
       if (preference.parameter >= model.tip_parameters())
         geometric_.push_back({own + preference.parameter - model.tip_parameters(), preference.tier});
     for (std::size_t i = std::size_t(model.tip_parameters()); i < model.parameters().size(); ++i) {
       parameters_.push_back(model.parameters()[i]);
-      parameters_.back().name = name_in(names[k], parameters_.back().name);
+      parameters_.back().name = name_in(one.name, parameters_.back().name);
     }
-    for (const Reading& reading : model.readings()) readings_.push_back({names[k] + "." + reading.name, reading.unit});
+    for (const Reading& reading : model.readings()) readings_.push_back({one.name + "." + reading.name, reading.unit});
     if (const std::string& reason = model.unmeasurable_reason();
         !reason.empty() && unmeasurable_reason_.find(reason) == std::string::npos)
       unmeasurable_reason_ += (unmeasurable_reason_.empty() ? "" : " or ") + reason;
     const int first_row = rows_;
     rows_ += model.rows();
-    parts_.push_back({std::move(models[k]), first_row, own});
+    parts_.push_back({std::move(one.model), first_row, own, one.noise_factor * one.noise_factor});
   }
+  coordinates_.push_back(make_choice(instrument_coordinate, names));
 }
 
 std::vector<double> InstrumentChoice::correction_of(const Part& part, std::span<const double> correction) const {
@@ -96,9 +98,10 @@ void share_of_rows(const Eigen::MatrixXd& all, Eigen::Index first, Eigen::Index 
 }
 
 /// Unit noise of all rows but those of one instrument.
-void spread_covariance(const Eigen::MatrixXd& own, Eigen::Index first, Eigen::Index rows, Eigen::MatrixXd& all) {
+void spread_covariance(const Eigen::MatrixXd& own, double variance, Eigen::Index first, Eigen::Index rows,
+                       Eigen::MatrixXd& all) {
   all.setIdentity(rows, rows);
-  all.block(first, first, own.rows(), own.rows()) = own;
+  all.block(first, first, own.rows(), own.rows()) = variance * own;
 }
 
 }  // namespace
@@ -112,7 +115,7 @@ bool InstrumentChoice::do_linearise(const Point& at, std::span<const int> select
   out.G.setZero(rows_, Eigen::Index(selected.size()));
   for (std::size_t j = 0; j < there.selected.size(); ++j)
     out.G.col(there.selected_at[j]).segment(first, there.rows) = own.G.col(Eigen::Index(j));
-  spread_covariance(own.covariance, first, rows_, out.covariance);
+  spread_covariance(own.covariance, there.part.variance, first, rows_, out.covariance);
   return true;
 }
 
@@ -151,7 +154,7 @@ bool InstrumentChoice::do_linearise_factored(const Point& at, std::span<const in
       out.coefficients.col(there.selected_at[j]).head(there.rows) = own.G.col(Eigen::Index(j));
     out.random_coefficients.resize(width, 0);
   }
-  spread_covariance(own.covariance, first, rows_, out.covariance);
+  spread_covariance(own.covariance, there.part.variance, first, rows_, out.covariance);
   return true;
 }
 
@@ -164,7 +167,8 @@ bool InstrumentChoice::do_pull_back(const Point& at, std::span<const int> select
   const Eigen::MatrixXd rows = by_G.middleRows(first, there.rows);
   std::vector<double> own(there.q.size());
   if (!there.part.model->pull_back(there.q, there.selected, rows(Eigen::all, there.selected_at),
-                                   by_covariance.block(first, first, there.rows, there.rows), own))
+                                   there.part.variance * by_covariance.block(first, first, there.rows, there.rows),
+                                   own))
     return false;
   std::copy_n(own.begin(), gradient.size() - 1, gradient.begin());
   return true;

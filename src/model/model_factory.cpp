@@ -95,16 +95,15 @@ std::unique_ptr<IdentificationModel> seen_by_each(const ProblemVariant& variant,
   for (const MeasurementSpec& one : instruments) readings.push_back(make_measurement(one));
   std::optional<WaysOfInstruments> ways;
   if (arm != nullptr && !arm->ways.empty()) ways.emplace(*arm, variant, instruments, readings);
-  std::vector<std::unique_ptr<ExplicitModel>> models;
-  std::vector<std::string> names;
-  std::vector<std::vector<char>> moving(ways ? instruments.size() : 0);
+  std::vector<InstrumentOfList> list;
   for (std::size_t k = 0; k < instruments.size(); ++k) {
     const MeasurementSpec& one = instruments[k];
-    auto tip = ways ? ways->of(one, *readings[k], moving[k]) : make_tip(variant);
-    models.push_back(std::make_unique<ExplicitModel>(std::move(tip), std::move(readings[k]), one.repeatability));
-    names.push_back(one.name);
+    list.push_back({one.name, nullptr, one.noise_factor});
+    InstrumentOfList& listed = list.back();
+    auto tip = ways ? ways->of(one, *readings[k], listed.moving) : make_tip(variant);
+    listed.model = std::make_unique<ExplicitModel>(std::move(tip), std::move(readings[k]), one.repeatability);
   }
-  return std::make_unique<InstrumentChoice>(std::move(models), names, std::move(moving));
+  return std::make_unique<InstrumentChoice>(std::move(list));
 }
 
 std::unique_ptr<IdentificationModel> observed(const ProblemVariant& variant) {

@@ -27,7 +27,7 @@ using yaml::Sign;
 using yaml::Value;
 using Read = std::function<void(const Value&, DesignReading&)>;
 
-constexpr int most_poses = 1'000'000, most_candidates = 10'000'000, most_restarts = 1'000'000;
+constexpr int most_candidates = 10'000'000, most_restarts = 1'000'000;
 
 const char* const name_schema = R"("type": ["string", "number"])";
 const char* const file_schema = R"("$ref": "#/$defs/file")";
@@ -89,7 +89,7 @@ void read_poses(const Value& value, DesignReading& reading) {
   DesignSpec& design = reading.design;
   design.poses.reset();
   design.smallest = value.is_scalar() && value.text("a number or auto is expected") == "auto";
-  if (!design.smallest) design.poses = {value.integer(1, most_poses), value.line()};
+  if (!design.smallest) design.poses = {value.integer(1, most_stated_poses), value.line()};
 }
 
 void read_candidates(const Value& value, DesignReading& reading) {
@@ -233,7 +233,7 @@ std::vector<DesignKey> make_keys() {
       {"design.method", "method", "NAME", R"("type": "string")", quoted(standard.method.value), "The planner.",
        located_text(&DesignSpec::method)},
       {"design.poses", "poses", "N|auto",
-       fmt::format(R"("anyOf": [{{{}}}, {{"const": "auto"}}])", whole_schema(1, most_poses)), "",
+       fmt::format(R"("anyOf": [{{{}}}, {{"const": "auto"}}])", whole_schema(1, most_stated_poses)), "",
        "Number of poses; auto: the smallest number that meets the requirements.", read_poses},
       {"design.require", "", "", R"("type": "object", "minProperties": 1)", "",
        "Requirements for poses: auto (95 % at every test pose) and for a calibration.",

@@ -22,6 +22,16 @@ struct SetJointNoise {
 
 }  // namespace
 
+InstrumentTimes times_of(const MeasurementSpec& instrument, const MotionSpec& motion) {
+  InstrumentTimes times{instrument.setup.value_or(motion.station_change),
+                        instrument.reading.value_or(motion.reading) * instrument.repeats};
+  // A tracker follows one target after the other; what else there is reads all at once.
+  const auto* points = std::get_if<PointsMeasurement>(&instrument.instrument);
+  if (points != nullptr && std::holds_alternative<TrackerNoise>(points->noise))
+    times.in_turn = int(points->targets.size());
+  return times;
+}
+
 void require_one_instrument(const Problem& problem, const std::string& what) {
   if (instruments_of(problem.measurement) == nullptr) return;
   throw InputError(problem.at(problem.measurement.line), "measurement is a list of instruments",

@@ -26,8 +26,7 @@ Measured read_isotropic(const Value& value, std::initializer_list<Quantity> quan
 }  // namespace
 
 DistanceMeasurement read_distance(const Section& section) {
-  section.allow({"type", "name", "of", "in", "targets", "anchors", "between", "range", "device", "repeats",
-                 "repeatability", "load"});
+  allow_instrument(section, {"targets", "anchors", "between", "range"});
   DistanceMeasurement distance;
   distance.targets = read_targets(section.at("targets"));
   if (const Value* between = section.find("between")) {
@@ -52,7 +51,7 @@ DistanceMeasurement read_distance(const Section& section) {
 }
 
 PlaneMeasurement read_plane_distance(const Section& section) {
-  section.allow({"type", "name", "of", "in", "probe", "plane", "range", "device", "repeats", "repeatability", "load"});
+  allow_instrument(section, {"probe", "plane", "range"});
   PlaneMeasurement touched;
   touched.probe = {"probe", section.at("probe").vector(Quantity::length), section.at("probe").line()};
   const Section plane(section.at("plane"));
@@ -68,8 +67,7 @@ PlaneMeasurement read_plane_distance(const Section& section) {
 }
 
 InclinationMeasurement read_inclination(const Section& section) {
-  section.allow(
-      {"type", "name", "of", "in", "axes", "rpy", "up", "range", "device", "repeats", "repeatability", "load"});
+  allow_instrument(section, {"axes", "rpy", "up", "range"});
   InclinationMeasurement inclination;
   if (const Value* axes = section.find("axes"))
     inclination.axes = read_components(*axes, std::span(pose_components).first(3));
@@ -83,7 +81,7 @@ InclinationMeasurement read_inclination(const Section& section) {
 }
 
 CameraMeasurement read_camera(const Section& section) {
-  section.allow({"type", "name", "of", "in", "mount", "camera", "board", "device", "repeats", "repeatability", "load"});
+  allow_instrument(section, {"mount", "camera", "board"});
   CameraMeasurement camera;
   camera.on_hand = section.at("mount").choice({"hand", "fixed"}) == "hand";
   const Section lens(section.at("camera"));

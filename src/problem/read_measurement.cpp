@@ -86,7 +86,7 @@ void read_point_device(const Value& value, PointNoise& noise, std::vector<Statio
 }
 
 PoseMeasurement read_pose(const Section& section) {
-  section.allow({"type", "name", "of", "in", "mount", "components", "device", "repeats", "repeatability", "load"});
+  allow_instrument(section, {"mount", "components"});
   PoseMeasurement pose;
   const Value* mount = section.find("mount");
   pose.on_hand = mount != nullptr && mount->choice({"hand", "fixed"}) == "hand";
@@ -126,7 +126,7 @@ PoseMeasurement read_pose(const Section& section) {
 
 PointsMeasurement read_points(const Section& section, bool single) {
   const std::string_view key = single ? "target" : "targets";
-  section.allow({"type", "name", "of", "in", key, "components", "device", "repeats", "repeatability", "load"});
+  allow_instrument(section, {key, "components"});
   PointsMeasurement points;
   if (single) points.targets.push_back(read_target("target", section.at(key)));
   else points.targets = read_targets(section.at(key));
@@ -177,6 +177,13 @@ Repeatability read_repeatability(const Value& value, const std::string& type) {
 }
 
 }  // namespace
+
+void allow_instrument(const Section& section, std::initializer_list<std::string_view> own) {
+  std::vector<std::string_view> keys{"type", "name", "of", "in"};
+  keys.insert(keys.end(), own.begin(), own.end());
+  keys.insert(keys.end(), {"device", "repeats", "repeatability", "line_of_sight", "most", "reading", "setup", "load"});
+  section.allow(keys);
+}
 
 Components read_components(const Value& value, std::span<const std::string_view> names) {
   const std::string expected = fmt::format("allowed: {}", fmt::join(names, ", "));
@@ -242,6 +249,11 @@ MeasurementSpec read_instrument(const Section& section) {
     measurement.repeats = repeats->integer(1, std::numeric_limits<int>::max());
   if (const Value* repeatability = section.find("repeatability"))
     measurement.repeatability = read_repeatability(*repeatability, type);
+  if (const Value* sight = section.find("line_of_sight")) measurement.line_of_sight = read_line_of_sight(*sight);
+  if (const Value* most = section.find("most")) measurement.most = most->integer(1, most_stated_poses);
+  if (const Value* reading = section.find("reading"))
+    measurement.reading = reading->number(Quantity::time, Sign::not_negative);
+  if (const Value* setup = section.find("setup")) measurement.setup = setup->number(Quantity::time, Sign::not_negative);
   if (const Value* load = section.find("load"))
     measurement.loaded_minus_unloaded = load->choice({"absolute", "loaded_minus_unloaded"}) != "absolute";
   return measurement;
@@ -254,6 +266,11 @@ void require_fits_list(const Section& section, MeasurementSpec& instrument) {
       (distance != nullptr && distance->anchors.empty()))
     section.at("type").fail("does not read where the tip is, and stands in a list of instruments",
                             "allowed there: pose, points, position, plane, inclination, camera, distance with anchors");
+  if (const auto& sight = instrument.line_of_sight)
+    if (sight->visible > 0 || sight->every > 0 || !sight->stations.empty())
+      section.at("line_of_sight")
+          .fail("has visible, stations, or references",
+                "those of an instrument of a list must see all its targets from its own place");
   if (instrument.loaded_minus_unloaded)
     section.at("load").fail("is loaded_minus_unloaded in a list of instruments", "allowed there: absolute");
   if (const std::vector<StationSpec>* stations = stations_of(instrument); stations != nullptr && stations->size() > 1)
@@ -293,6 +310,13 @@ MeasurementSpec read_measurement(const Value& value) {
   if (!value.is_list()) {
     const Section section(value);
     measurement = read_instrument(section);
+    constexpr std::pair<const char*, const char*> elsewhere[] = {{"line_of_sight", "workspace: line_of_sight"},
+                                                                 {"most", "design: poses"},
+                                                                 {"reading", "workspace: motion: reading"},
+                                                                 {"setup", "workspace: motion: station_change"}};
+    for (const auto& [key, one] : elsewhere)
+      if (const Value* found = section.find(key))
+        found->fail("is for an instrument of a list", std::string("of one alone: ") + one);
     // There is nothing to tell it from.
     if (const Value* name = section.find("name")) read_instrument_name(*name);
     return measurement;

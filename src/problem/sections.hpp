@@ -31,6 +31,11 @@ InclinationMeasurement read_inclination(const yaml::Section& section);
 CameraMeasurement read_camera(const yaml::Section& section);
 JointsMeasurement read_joint_sensors(const yaml::Section& section);
 
+/// Poses of a plan or an instrument.
+inline constexpr int most_stated_poses = 1'000'000;
+
+/// Refuses keys of an instrument that are neither its own nor any instrument's.
+void allow_instrument(const yaml::Section& section, std::initializer_list<std::string_view> own);
 /// Chosen components as ascending indices into `names`.
 Components read_components(const yaml::Value& value, std::span<const std::string_view> names);
 /// {NAME: [x, y, z]}, at least one.

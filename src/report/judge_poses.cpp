@@ -47,7 +47,7 @@ class PoseJudge {
   JudgedPose judge(const std::vector<double>& q) {
     const IdentificationModel& model = *setup_.first().model;
     JudgedPose judged{pose_of(model, q), reason(q), keyframe_at(drawing_, q), information(q), {}};
-    if (setup_.cell->sight != nullptr) judged.pose.sights = sights_of(*setup_.cell->sight, q);
+    judged.pose.sights = sights_of(*setup_.cell, q);
     judged.pose.nearest = nearest_at(*setup_.cell, q);
     if (drawing_.camera()) judged.pixels = predicted_pixels(model, q);
     return judged;

@@ -317,10 +317,10 @@ class ReportBuilder {
 
   /// A plan of so many of the candidates; none if they do not determine the parameters, or after a stop.
   std::optional<CurvePoint> curve_at(int poses, const Configurations& pool, const std::vector<SearchPart>& parts,
-                                     const Spacing& apart) const {
+                                     const std::optional<Spacing>& spacing) const {
     try {
       SearchRequest wanted = search_request(study_, poses);
-      if (study_.distance.kept) wanted.spacing = &apart;
+      if (spacing) wanted.spacing = &*spacing;
       wanted.bound_tolerance = start_tolerance;
       wanted.planner.kicks = curve_kicks;
       const SearchResult found = search(copied_parts(parts), wanted, monitor_);
@@ -346,14 +346,14 @@ class ReportBuilder {
     std::atomic<bool> left_out = false;
     std::vector<SearchPart> parts;
     if (!wanted.empty()) parts = parts_of(pool);
-    const Spacing apart = with_points(study_.distance.spacing, pool);
+    const std::optional<Spacing> spacing = study_.distance.among(pool);
     // One search of few restarts keeps no second thread busy.
     parallel_for(wanted.size(), thread_count(options_.threads), [&](std::size_t i, int) {
       if (monitor_.should_stop()) {
         left_out = true;
         return;
       }
-      points[i] = curve_at(wanted[i], pool, parts, apart);
+      points[i] = curve_at(wanted[i], pool, parts, spacing);
       if (monitor_.should_stop()) left_out = true;
       monitor_.report({"other numbers of poses", double(++done), double(wanted.size()), {}, {}, {}});
     });

@@ -72,6 +72,8 @@ Json instruments_json(const Plan& plan) {
     for (const auto& [name, sigma] : worth.sigma_without) sigmas[name] = sigma;
     json.push_back({{"name", worth.name},
                     {"poses", worth.poses},
+                    {"setup_seconds", worth.setup},
+                    {"reading_seconds", worth.reading},
                     {"share", worth.share},
                     {"efficiency_without", worth.without},
                     {"sigma_without", sigmas},

@@ -99,13 +99,14 @@ std::string variants_text(const Plan& plan) {
 std::string instruments_text(const Plan& plan) {
   if (plan.instruments.empty()) return {};
   using A = Table::Align;
-  Table table({"instrument", "poses", "share of the information", "left without it", "error to expect without it"},
-              {A::left, A::right, A::right, A::right, A::right});
+  Table table({"instrument", "poses", "set-up and readings", "share of the information", "left without it",
+               "error to expect without it"},
+              {A::left, A::right, A::right, A::right, A::right, A::right});
   for (const InstrumentWorth& worth : plan.instruments)
-    table.row({worth.name, std::to_string(worth.poses), percent(worth.share),
+    table.row({worth.name, std::to_string(worth.poses), seconds_text(worth.setup + worth.reading), percent(worth.share),
                worth.without > 0 ? percent(worth.without) : "not identifiable",
                worth.expected_without ? shown_value(worth.expected_without->usual().error, "m") : "-"});
-  if (plan.prior_share > 0) table.row({"known before", "", percent(plan.prior_share), "", ""});
+  if (plan.prior_share > 0) table.row({"known before", "", "", percent(plan.prior_share), "", ""});
   return table.text();
 }
 

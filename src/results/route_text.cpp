@@ -46,10 +46,6 @@ Json stop_json(const PlannedPose& pose) {
   return json;
 }
 
-std::string seconds_text(double seconds) {
-  return seconds < 120 ? fmt::format("{:.1f} s", seconds) : fmt::format("{:.1f} min", seconds / 60);
-}
-
 const RouteMotion* motion_to(const Route& route, int id) {
   for (const RouteMotion& motion : route.motions)
     if (motion.to == id) return &motion;

@@ -72,11 +72,7 @@ ScenarioPool::ScenarioPool(const ScenarioFigures& figures, const RobustRequest& 
     priors_[k] = figures.prior_of(int(k));
   });
   nominal_ = figures.nominal().subset(candidates_);
-  if (!request.spacing) return;
-  spacing_ = *request.spacing;
-  spacing_.points.resize(Eigen::Index(candidates_.size()), request.spacing->points.cols());
-  for (std::size_t i = 0; i < candidates_.size(); ++i)
-    spacing_.points.row(Eigen::Index(i)) = request.spacing->points.row(candidates_[i]);
+  if (request.spacing) spacing_ = request.spacing->of(candidates_);
 }
 
 std::vector<int> ScenarioPool::in_pool(const std::vector<int>& members) const {
@@ -126,8 +122,7 @@ std::vector<int> ScenarioPool::heaviest(const CandidateWeights& weights) const {
   std::vector<int> chosen;
   for (const int i : by_value(in_pool(weights), true)) {
     if (int(chosen.size()) == request_.poses) break;
-    const auto near = [&](int other) { return request_.spacing && spacing_.too_near(i, other); };
-    if (std::none_of(chosen.begin(), chosen.end(), near)) chosen.push_back(i);
+    if (!request_.spacing || spacing_.admits(chosen, i)) chosen.push_back(i);
   }
   if (int(chosen.size()) < request_.poses) chosen.clear();
   return chosen;

@@ -10,6 +10,7 @@
 #include "posewright/criterion/registry.hpp"
 #include "posewright/criterion/reserve.hpp"
 #include "posewright/planning/extended_bound.hpp"
+#include "posewright/planning/limited_bound.hpp"
 #include "posewright/planning/spectral_bound.hpp"
 #include "posewright/planning/whiten.hpp"
 #include "posewright/proof/taylor_bound.hpp"
@@ -172,6 +173,18 @@ void tighten(Certificate& certificate, const std::optional<SpectralBound>& spect
   certificate.max_sensitivity_ratio = std::exp(2 * spectral->gap);
 }
 
+/// Counts the limits of the request's spacing, too, where it has some.
+/// @param spacing  with the points of the blocks
+void limit(Certificate& certificate, const BlockArray& blocks, const Spacing& spacing, const Joined& joined,
+           const InformationFunction& function, const ApproximateDesign& approximate, const SearchRequest& request,
+           double offset, const Monitor& monitor) {
+  if (spacing.most.empty()) return;
+  const LimitedChoice choice{blocks, spacing, request.poses, std::min(request.repeats.most, request.poses),
+                             bound_options(request, joined.prior).prior};
+  const double bound = limited_bound(choice, function, approximate, request.planner.threads, monitor);
+  certificate.bound = std::min(certificate.bound, bound + offset);
+}
+
 /// All blocks of both.
 BlockArray joined_blocks(const BlockArray& first, const BlockArray& second) {
   BlockArray both(first.count() + second.count(), first.rows(), first.columns());
@@ -240,6 +253,9 @@ Bound bound_only(std::vector<SearchPart> parts, const SearchRequest& request, co
   const ApproximateDesign approximate =
       solve_approximate_design(joined.blocks, criterion->function(), bound_options(request, joined.prior), monitor);
   fill(result.certificate, approximate, joined, request, offset_of(joined, entry));
+  if (request.spacing != nullptr)
+    limit(result.certificate, joined.blocks, *request.spacing, joined, criterion->function(), approximate, request,
+          offset_of(joined, entry), monitor);
   tighten(result.certificate, spectral, false);
   result.sensitivity = approximate.sensitivity;
   result.price = approximate.price;
@@ -367,6 +383,9 @@ SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request,
   BlockArray added;
   if (!result.design.added.empty()) added = blocks_at(result.design.added, *space, joined);
   if (degree > 0 && request.certify) fill(result.certificate, approximate, joined, request, offset);
+  const bool limited = degree > 0 && request.certify && request.spacing != nullptr;
+  if (limited && result.design.added.empty())
+    limit(result.certificate, joined.blocks, *request.spacing, joined, function, approximate, request, offset, monitor);
   else if (spectral) fill(result.certificate, {}, joined, request, 0.0);
   if (share > 0 && !result.design.added.empty()) {
     // Poses between the candidates count as candidates, so that the bound holds for the plan itself; and so do those
@@ -379,6 +398,9 @@ SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request,
           extended_bound(joined.blocks, approximate, more, function, bound_options(request, joined.prior), monitor);
       fill(result.certificate, extended, joined, request, offset);
     }
+    if (limited)
+      limit(result.certificate, joined_blocks(joined.blocks, more), request.spacing->with(found), joined, function,
+            approximate, request, offset, monitor);
     if (spectral) spectral = spectral_bound_of(joined_blocks(joined.blocks, more), joined, function, request, monitor);
     if (degree == 0 && !spectral) result.certificate.proved = false;
     result.certificate.count += more.count();

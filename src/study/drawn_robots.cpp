@@ -63,9 +63,9 @@ DrawnRobots::DrawnRobots(const Study& study, const Configurations& sought, const
     : columns_(study.first().columns),
       model_(place_variant({*study.problem, *study.first().spec}, study.cell, monitor).model),
       seed_(study.planner.seed) {
-  if (study.cell->sight_is_asked && study.cell->sight != nullptr)
+  if (study.cell->sight() != nullptr && study.cell->sight()->judges())
     model_->set_visibility(std::make_shared<RememberedSight>(
-        std::shared_ptr<const Visibility>(study.cell, study.cell->sight.get()), sought, study.planner.threads));
+        std::shared_ptr<const Visibility>(study.cell, study.cell->sight()), sought, study.planner.threads));
 }
 
 std::vector<double> DrawnRobots::correction(int robot) const {
@@ -97,7 +97,7 @@ RobustRequest robust_request(const Study& study, const DrawnRobots& robots, cons
   request.poses = int(plan.size());
   request.nuisance = variant.nuisance_counts ? 0 : variant.columns.nuisance;
   request.repeats = study.repeats;
-  if (study.distance.kept) request.spacing = with_points(study.distance.spacing, configurations);
+  request.spacing = study.distance.among(configurations);
   request.planner = study.planner;
   request.plan = std::move(plan);
   request.nominal = search_blocks(variant, configurations, study.planner.threads);

@@ -122,7 +122,7 @@ class StudyProbe : public ConfigurationSpace::Probe {
 
   /// Far enough from every pose that is measured.
   bool is_new(std::span<const double> q) const {
-    for (std::size_t i = 0; spacing_.unit.size() > 0 && i < measured_.count(); ++i)
+    for (std::size_t i = 0; i < measured_.count(); ++i)
       if (spacing_.too_near(measured_[i], q)) return false;
     return true;
   }
@@ -182,14 +182,14 @@ class StudySpace : public BoundedSpace {
     for (const Coordinate& c : parts_.front().workspace->proposed())
       axes_.push_back({c.lower, c.upper, !c.discrete(), c.unit == "rad", c.values});
     // Poses that are there already are holes in the box.
-    box_ = measured_.count() == 0 || spacing.unit.size() == 0;
+    box_ = measured_.count() == 0 || !spacing.keeps_distance();
     for (const SpacePart& part : parts_) box_ = box_ && part.workspace->reasons().size() == 1;
   }
 
   const std::vector<Axis>& axes() const override { return axes_; }
   bool is_box() const override { return box_; }
   std::optional<int> margins() const override {
-    if (measured_.count() > 0 && spacing_.unit.size() > 0) return std::nullopt;
+    if (measured_.count() > 0 && spacing_.keeps_distance()) return std::nullopt;
     int count = 0;
     for (const SpacePart& part : parts_) {
       const auto own = part.workspace->margins();

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <span>
 #include <vector>
 
+#include "posewright/model/instrument_choice.hpp"
 #include "posewright/study/pose_distance.hpp"
 #include "posewright/study/study.hpp"
 #include "posewright/support/error.hpp"
@@ -97,16 +99,57 @@ std::string distance_text(const std::vector<Coordinate>& coordinates, const Spac
   return text;
 }
 
-PoseDistance pose_distance(const std::vector<Coordinate>& coordinates,
-                           const std::optional<DesignSpec::MinimumDistance>& stated, Repeats repeats,
-                           const Configurations& candidates, const Configurations& known,
-                           const std::optional<int>& poses, bool listed) {
-  PoseDistance distance{spacing_of(coordinates, stated, repeats), stated.has_value()};
-  if (stated || repeats.most > 1 || listed) return distance;
-  Spacing usual = usual_spacing(coordinates, candidates, known, poses);
-  distance.kept = distance.usual = usual.unit.size() > 0;
-  if (distance.usual) distance.spacing = std::move(usual);
+namespace {
+
+/// Poses that each instrument may still read; empty where none is limited.
+std::vector<int> left_for_instruments(const std::vector<MeasurementSpec>& instruments, std::size_t instrument,
+                                      const Configurations& known) {
+  std::vector<int> left;
+  for (const MeasurementSpec& one : instruments) left.push_back(one.most.value_or(std::numeric_limits<int>::max()));
+  if (std::ranges::none_of(instruments, [](const MeasurementSpec& one) { return one.most.has_value(); })) return {};
+  for (std::size_t i = 0; i < known.count(); ++i)
+    if (int& own = left[std::size_t(known[i][instrument])]; own > 0) --own;
+  return left;
+}
+
+void limit_instruments(const Problem& problem, const std::vector<Coordinate>& coordinates, const Configurations& known,
+                       const std::optional<int>& poses, Spacing& spacing) {
+  const std::vector<MeasurementSpec>* instruments = instruments_of(problem.measurement);
+  if (instruments == nullptr) return;
+  const std::size_t instrument = *instrument_index(coordinates);
+  spacing.limited = Eigen::Index(instrument);
+  spacing.most = left_for_instruments(*instruments, instrument, known);
+  if (spacing.most.empty() || !poses) return;
+  const long left = std::accumulate(spacing.most.begin(), spacing.most.end(), 0L);
+  if (left < *poses)
+    throw InputError(problem.at(problem.measurement.line),
+                     fmt::format("measurement: its instruments may read {} poses{} by their `most`, and {} are wanted",
+                                 left, known.count() > 0 ? " more" : "", *poses),
+                     "a larger `most`, or fewer poses");
+}
+
+}  // namespace
+
+PoseDistance pose_distance(const Study& study, const Configurations& known, const std::optional<int>& poses) {
+  const std::vector<Coordinate>& coordinates = study.first().workspace->coordinates();
+  const auto& stated = study.problem->design.minimum_distance;
+  PoseDistance distance{spacing_of(coordinates, stated, study.repeats), stated.has_value()};
+  if (!stated && study.repeats.most == 1 && study.list.empty()) {
+    Spacing usual = usual_spacing(coordinates, study.configurations, known, poses);
+    distance.kept = distance.usual = usual.keeps_distance();
+    if (distance.usual) distance.spacing = std::move(usual);
+  }
+  limit_instruments(*study.problem, coordinates, known, poses, distance.spacing);
   return distance;
+}
+
+std::optional<Spacing> PoseDistance::among(const Configurations& candidates) const {
+  if (!kept && spacing.most.empty()) return std::nullopt;
+  Spacing own = spacing;
+  if (!kept) own.unit.resize(0);
+  own.points = Eigen::Map<const BlockArray::RowMatrix>(candidates.values.data(), Eigen::Index(candidates.count()),
+                                                       candidates.dimension);
+  return own;
 }
 
 Configurations PoseDistance::away_from(const Configurations& known, const Configurations& candidates,
@@ -126,12 +169,6 @@ Configurations PoseDistance::away_from(const Configurations& known, const Config
     if (!taken(candidates[i])) append(left, candidates, i);
   if (left.count() == 0) throw CannotDo("every candidate is too near to a fixed or measured pose");
   return left;
-}
-
-Spacing with_points(Spacing spacing, const Configurations& candidates) {
-  spacing.points = Eigen::Map<const BlockArray::RowMatrix>(candidates.values.data(), Eigen::Index(candidates.count()),
-                                                           candidates.dimension);
-  return spacing;
 }
 
 }  // namespace posewright

@@ -112,7 +112,7 @@ void keep_away_from_known(Study& study) {
   if (const long lost = long(before - study.configurations.count()); lost > 0)
     study.configurations.rejected.emplace_back(
         study.fixed.count() > 0 ? "fixed or measured already" : "measured already", lost);
-  if (study.distance.kept) study.minimum_distance = with_points(study.distance.spacing, study.configurations);
+  study.spacing = study.distance.among(study.configurations);
 }
 
 Study with_candidates(Study study, Unidentifiable unidentifiable) {
@@ -130,8 +130,9 @@ Study with_candidates(Study study, Unidentifiable unidentifiable) {
   if (std::string warning = compensator_warning(problem.robot, coordinates); !warning.empty())
     study.notes.push_back(std::move(warning));
   study.notes.insert(study.notes.end(), study.fixed_notes.begin(), study.fixed_notes.end());
-  study.distance = pose_distance(coordinates, problem.design.minimum_distance, study.repeats, study.configurations,
-                                 known_before(study), study.poses, !study.list.empty());
+  std::optional<int> wanted = study.poses;
+  if (wanted) *wanted -= int(study.fixed.count());
+  study.distance = pose_distance(study, known_before(study), wanted);
   keep_away_from_known(study);
   if (study.truth != nullptr) study.discrepancy = make_discrepancy(study);
   return study;
@@ -236,7 +237,7 @@ SearchRequest search_request(const Setup& setup, int poses) {
 
 SearchRequest spaced_request(const Study& study, int poses) {
   SearchRequest request = search_request(study, poses);
-  if (study.distance.kept) request.spacing = &study.minimum_distance;
+  if (study.spacing) request.spacing = &*study.spacing;
   return request;
 }
 

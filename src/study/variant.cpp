@@ -46,11 +46,12 @@ std::vector<std::vector<double>> robots_to_read(const Variant& variant) {
 
 Variant place_variant(const ProblemVariant& of, const std::shared_ptr<const Cell>& cell, const Monitor& monitor) {
   Variant variant{&of.problem, &of.spec, cell, make_model(of), nullptr};
-  if (cell != nullptr && cell->sight_is_asked) {
+  // Instruments of a list must see all their targets.
+  if (cell != nullptr && cell->sight() != nullptr && cell->sight()->judges()) {
     if (variant.model->rows_per_target() > 0 &&
-        variant.model->rows() != cell->sight->targets() * variant.model->rows_per_target())
+        variant.model->rows() != cell->sight()->targets() * variant.model->rows_per_target())
       throw std::logic_error("targets of the instrument and of the line of sight differ");
-    variant.model->set_visibility({cell, cell->sight.get()});
+    variant.model->set_visibility({cell, cell->sight()});
   }
   variant.workspace = std::make_unique<Workspace>(*variant.model, of.problem, cell, monitor, robots_to_read(variant));
   return variant;

@@ -110,4 +110,8 @@ std::string shown_to(double value, double resolution, const std::string& unit) {
   return unsigned_zero(fmt::format("{:.{}f}", value * shown.factor, decimals)) + shown.suffix;
 }
 
+std::string seconds_text(double seconds) {
+  return seconds < 120 ? fmt::format("{:.1f} s", seconds) : fmt::format("{:.1f} min", seconds / 60);
+}
+
 }  // namespace posewright

@@ -119,6 +119,7 @@ class ComparisonRun {
     if (monitor_.should_stop()) return std::nullopt;
     SearchRequest wanted = request_for(study_, variant, poses);
     wanted.criterion = "o1";
+    wanted.spacing = nullptr;  // poses that were given need not keep it
     std::optional<double> bound;
     if (double(poses) <= double(pool_.count()) * wanted.repeats.most)
       bound = bound_only(search_parts(variant, pool_, study_.planner.threads), wanted,

@@ -157,7 +157,17 @@ class ListEvaluation {
   Bound bound_of(const std::string& criterion) {
     SearchRequest wanted = search_request(study_, int(poses_.count()));
     wanted.criterion = criterion;
+    const std::optional<Spacing> limits = limits_of_list();
+    if (limits) wanted.spacing = &*limits;
     return bound_only(parts_of_pool(criterion), wanted, monitor_);
+  }
+
+  /// Limits of the instruments among the pool; none where the list itself breaks them.
+  std::optional<Spacing> limits_of_list() const {
+    std::optional<Spacing> limits = study_.distance.among(pool_);
+    if (!limits || limits->most.empty()) return std::nullopt;
+    limits->unit.resize(0);
+    return limits->allows(in_pool_) ? limits : std::nullopt;
   }
 
   /// Made once for all criteria that need no truth.
@@ -221,9 +231,7 @@ class ListEvaluation {
   ListChange add(int k, double phi, const std::vector<double>& references) {
     const int threads = study_.planner.threads;
     const Configurations known = with_measured(study_, poses_);
-    const PoseDistance distance =
-        pose_distance(study_.first().workspace->coordinates(), study_.problem->design.minimum_distance, study_.repeats,
-                      study_.configurations, known, k, !study_.list.empty());
+    const PoseDistance distance = pose_distance(study_, known, k);
     const Configurations candidates = distance.away_from(known, study_.configurations, study_.repeats);
     std::vector<SearchPart> parts = search_parts(study_, study_.criterion, candidates, threads);
     // Parts know what was measured before the list; the list's own information comes on top of it, once.
@@ -233,8 +241,8 @@ class ListEvaluation {
       parts[v].prior = parts[v].prior.size() > 0 ? Eigen::MatrixXd(parts[v].prior + own) : own;
     }
     SearchRequest wanted = search_request(study_, k);
-    const Spacing spacing = with_points(distance.spacing, candidates);
-    if (distance.kept) wanted.spacing = &spacing;
+    const std::optional<Spacing> spacing = distance.among(candidates);
+    if (spacing) wanted.spacing = &*spacing;
     wanted.make_space = space_maker(study_, study_.criterion, candidates, known, distance.spacing);
     wanted.references = references;
     const SearchResult found = search(std::move(parts), wanted, monitor_);

@@ -142,7 +142,7 @@ void fill_poses(Plan& plan, const Study& study, const Configurations& chosen, co
     pose.id = int(i) + 1;
     pose.measured = i < study.measured.count();
     pose.fixed = i < before && !pose.measured;
-    if (study.cell->sight != nullptr) pose.sights = sights_of(*study.cell->sight, q);
+    pose.sights = sights_of(*study.cell, q);
     pose.nearest = nearest_at(*study.cell, q);
     pose.contribution = contribution[Eigen::Index(i)];
     if (i >= before) {
@@ -264,6 +264,9 @@ void fill_instruments(Plan& plan, const Study& study, const Configurations& chos
     for (int i = 0; i < int(reads.size()); ++i)
       if (reads[std::size_t(i)] == k) own.push_back(i);
     worth.poses = int(own.size());
+    const InstrumentTimes times = times_of((*instruments)[std::size_t(k)], study.problem->workspace.motion);
+    if (worth.poses > 0) worth.setup = times.setup;
+    worth.reading = times.reading * times.in_turn * worth.poses;
     fill_without(worth, study, without(chosen, own), measure, phi, degree > 0 ? degree : 1.0);
     plan.instruments.push_back(std::move(worth));
   }

@@ -22,11 +22,13 @@ PlannedPose pose_of(const IdentificationModel& model, std::span<const double> q)
   return pose;
 }
 
-std::vector<TargetSight> sights_of(const LineOfSight& sight, std::span<const double> q) {
+std::vector<TargetSight> sights_of(const Cell& cell, std::span<const double> q) {
   std::vector<TargetSight> result;
-  const auto [first, last] = sight.stations_of(q);
+  const LineOfSight* sight = cell.sight_at(q);
+  if (sight == nullptr) return result;
+  const auto [first, last] = sight->stations_of(q);
   for (int station = first; station <= last; ++station)
-    for (const Sight& s : sight.sights(q, station)) result.push_back(target_sight(sight, s, station));
+    for (const Sight& s : sight->sights(q, station)) result.push_back(target_sight(*sight, s, station));
   return result;
 }
 

@@ -17,27 +17,38 @@ class CollisionCheck : public ValidityCheck {
   const Collision& collision_;
 };
 
+/// Of whichever instrument reads.
 class SightCheck : public ValidityCheck {
  public:
-  SightCheck(const LineOfSight& sight, bool past_bodies) : sight_(sight), past_bodies_(past_bodies) {}
-  std::vector<std::string> reasons() const override { return sight_.reasons(); }
-  int violation(std::span<const double> q) const override { return sight_.violation(q, past_bodies_); }
+  SightCheck(const Cell& cell, bool past_bodies) : cell_(cell), past_bodies_(past_bodies) {
+    for (const auto& sight : cell.sights) {
+      first_reasons_.push_back(int(reasons_.size()));
+      if (sight != nullptr && sight->judges())
+        reasons_.insert(reasons_.end(), sight->reasons().begin(), sight->reasons().end());
+    }
+  }
+  std::vector<std::string> reasons() const override { return reasons_; }
+  int violation(std::span<const double> q) const override {
+    const LineOfSight* sight = cell_.sight_at(q);
+    const int reason = sight == nullptr || !sight->judges() ? -1 : sight->violation(q, past_bodies_);
+    return reason < 0 ? reason : first_reasons_[cell_.instrument_at(q)] + reason;
+  }
   /// Directions and distances alone: what stands between is not asked.
   NecessaryLimits necessary_limits() const override {
-    return past_bodies_ ? sight_.necessary_limits() : NecessaryLimits{};
+    return past_bodies_ && cell_.sight() != nullptr ? cell_.sight()->necessary_limits() : NecessaryLimits{};
   }
   void necessary_values(std::span<const double> q, std::span<double> values) const override {
-    sight_.necessary_values(q, values);
+    cell_.sight()->necessary_values(q, values);
   }
 
  private:
-  const LineOfSight& sight_;
+  const Cell& cell_;
   bool past_bodies_;
+  std::vector<std::string> reasons_;
+  std::vector<int> first_reasons_;  // per instrument
 };
 
-bool sight_is_asked(const CheckContext& context) {
-  return context.cell != nullptr && context.cell->sight != nullptr && context.cell->sight_is_asked;
-}
+bool sight_is_asked(const CheckContext& context) { return context.cell != nullptr && context.cell->sight_is_asked(); }
 
 }  // namespace
 
@@ -49,11 +60,11 @@ void add_collision_check(const CheckContext& context, Checks& checks) {
 void add_direction_check(const CheckContext& context, Checks& checks) {
   // Without bodies there is nothing more to a sight.
   if (sight_is_asked(context) && context.cell->collision != nullptr)
-    checks.push_back(std::make_unique<SightCheck>(*context.cell->sight, false));
+    checks.push_back(std::make_unique<SightCheck>(*context.cell, false));
 }
 
 void add_sight_check(const CheckContext& context, Checks& checks) {
-  if (sight_is_asked(context)) checks.push_back(std::make_unique<SightCheck>(*context.cell->sight, true));
+  if (sight_is_asked(context)) checks.push_back(std::make_unique<SightCheck>(*context.cell, true));
 }
 
 }  // namespace posewright

@@ -150,8 +150,8 @@ class Workspace::Implementation {
     space->setStateValidityCheckingResolution(0.04);
     space->setup();
     reasons = checker->reasons();
-    if (cell != nullptr && cell->sight != nullptr && cell->sight->can_propose())
-      views = std::make_unique<ViewSampler>(model, *cell->sight, proposed);
+    if (cell != nullptr && cell->sight() != nullptr && cell->sight()->can_propose())
+      views = std::make_unique<ViewSampler>(model, *cell->sight(), proposed);
     choose_samplers(problem.workspace, problem);
   }
 
@@ -169,7 +169,7 @@ class Workspace::Implementation {
     else sampler_shares = {{Kind::even, 1}, {Kind::boundary, 1}};
   }
 
-  bool cut_by_cell() const { return cell != nullptr && (cell->collision != nullptr || cell->sight_is_asked); }
+  bool cut_by_cell() const { return cell != nullptr && (cell->collision != nullptr || cell->sight_is_asked()); }
 
   const IdentificationModel& model;
   std::shared_ptr<const Cell> cell;

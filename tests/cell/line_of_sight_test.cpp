@@ -48,7 +48,7 @@ struct Scenery {
     cell = make_cell(problem);
     site = place_variant({problem, problem.variants.front()}, cell);
   }
-  const LineOfSight& sight() const { return *cell->sight; }
+  const LineOfSight& sight() const { return *cell->sight(); }
   std::string reason(const std::vector<double>& q) const {
     const int reason = site.workspace->violation(q);
     return reason < 0 ? "" : site.workspace->reasons()[std::size_t(reason)];

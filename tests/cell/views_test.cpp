@@ -62,7 +62,7 @@ TEST(Views, OfACameraInTheHandAreEvenOnTheDomeBeforeTheBoard) {
   double cosines = 0, distances = 0, off_axis = 0;
   constexpr int draws = 4000;
   for (int i = 0; i < draws; ++i) {
-    const Isometry3d X = s.cell->sight->propose_tip(s.anywhere(random), random) * X_TipCamera;
+    const Isometry3d X = s.cell->sight()->propose_tip(s.anywhere(random), random) * X_TipCamera;
     const Vector3d way = middle - X.translation();
     EXPECT_GE(way.norm(), 0.6 - 1e-9);
     EXPECT_LE(way.norm(), 1.2 + 1e-9);
@@ -86,7 +86,7 @@ TEST(Views, OfATrackerTurnReflectorsTowardsItAndLeaveThemWhereTheyAre) {
   for (int i = 0; i < 500; ++i) {
     const std::vector<double> q = s.anywhere(random);
     const Vector3d before = s.variant.model->tool_pose(q) * Vector3d(0.2, 0.1, 0);
-    const Isometry3d X = s.cell->sight->propose_tip(q, random);
+    const Isometry3d X = s.cell->sight()->propose_tip(q, random);
     const Vector3d way = Vector3d(4, 1, 0.5) - X * Vector3d(0.2, 0.1, 0);
     EXPECT_LE(angle_between(X.linear().col(1), way), 30 * one_degree + 1e-6);
     if ((Vector3d(4, 1, 0.5) - before).norm() > 1) {
@@ -99,13 +99,13 @@ TEST(Views, AreReachedByTheJointsThatAreReturned) {
   const Site s(
       camera("fixed", "position: [3.2, 0, 1.2], rpy: [0, -90 deg, 0]", "position: [0.2, 0, 0], rpy: [0, 90 deg, 0]"),
       "line_of_sight: {range: [0.6, 2], acceptance: 50 deg, normals: {\"*\": [0, 0, 1]}}");
-  const ViewSampler views(*s.variant.model, *s.cell->sight, s.variant.workspace->proposed());
+  const ViewSampler views(*s.variant.model, *s.cell->sight(), s.variant.workspace->proposed());
   int reached = 0, seen = 0;
   for (std::uint64_t i = 0; i < 400; ++i) {
     Random first(3, i), again(3, i);
     std::vector<double> q = s.anywhere(first);
     s.anywhere(again);
-    const Isometry3d wanted = s.cell->sight->propose_tip(q, again);
+    const Isometry3d wanted = s.cell->sight()->propose_tip(q, again);
     if (!views.move_to_view(q, first)) continue;
     ++reached;
     const Isometry3d X = s.variant.model->tool_pose(q);
@@ -136,7 +136,7 @@ TEST(Candidates, OfACameraThatSeldomSeesItsBoardComeFromViewsOnAnyNumberOfThread
   for (std::size_t i = 0; i < one.count(); ++i) {
     EXPECT_LT(s.variant.workspace->violation(one[i]), 0);
     // The instrument's own word, point by point.
-    for (const Sight& sight : s.cell->sight->sights(one[i], 0)) EXPECT_LT(sight.hidden_by, 0);
+    for (const Sight& sight : s.cell->sight()->sights(one[i], 0)) EXPECT_LT(sight.hidden_by, 0);
   }
   options.threads = 3;
   EXPECT_EQ(sample_configurations(*s.variant.workspace, options, Monitor{}).values, one.values);

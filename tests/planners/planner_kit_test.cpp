@@ -67,13 +67,14 @@ double value_of(const Criterion& criterion, const CandidateView& view, const std
   return criterion.start(view, members)->value();
 }
 
-/// Best value over all sets, by enumeration.
+/// Best value over all sets that the view's spacing allows, by enumeration.
 double enumerated_optimum(const Criterion& criterion, const CandidateView& view, int poses, bool repeats) {
   const int n = int(view.blocks->count());
   std::vector<int> members(std::size_t(poses), 0);
   double best = -std::numeric_limits<double>::infinity();
   const auto next = [&](auto&& self, int position, int first) -> void {
     if (position == poses) {
+      if (view.spacing != nullptr && !view.spacing->allows(members)) return;
       best = std::max(best, value_of(criterion, view, members));
       return;
     }
@@ -139,8 +140,8 @@ class PlannerKit : public testing::TestWithParam<Case> {
     return posewright::value_of(criterion, {&chosen, nuisance, 1}, all);
   }
 
-  Design plan(const WaveSpace& space, int poses, std::uint64_t seed, int threads, int nuisance = 0,
-              int restarts = 8) const {
+  Design plan(const WaveSpace& space, int poses, std::uint64_t seed, int threads, int nuisance = 0, int restarts = 8,
+              const Spacing* spacing = nullptr) const {
     const BlockArray& blocks = space.blocks();
     const auto criterion = make_criterion(GetParam().criterion, kit_data(blocks.columns(), nuisance));
     ApproximateDesignOptions bound;
@@ -151,6 +152,7 @@ class PlannerKit : public testing::TestWithParam<Case> {
         solve_approximate_design(blocks, bounded ? criterion->function() : log_det, bound, Monitor{});
     if (!bounded) approximate.sensitivity.clear();
     DesignTask task{{&blocks, nuisance, GetParam().repeats ? poses : 1}, criterion.get(), poses, &approximate};
+    task.candidates.spacing = spacing;
     if (needs_configurations(GetParam().planner)) task.space = &space;
     PlannerOptions options;
     options.restarts = restarts;
@@ -194,6 +196,35 @@ TEST_P(PlannerKit, FindsTheOptimumOfTinyProblems) {
     }
   }
   EXPECT_GE(found, 5) << "of 6 tiny problems";
+}
+
+TEST_P(PlannerKit, FindsTheBestThatALimitAllows) {
+  if (needs_configurations(GetParam().planner)) GTEST_SKIP() << "values of a coordinate that does not move";
+  int found = 0;
+  for (std::uint64_t seed = 0; seed < 3; ++seed) {
+    const int poses = 5, allowed = 2;
+    const WaveSpace& space = space_of(10, GetParam().rows, 4, 40 + seed);
+    const auto criterion = make_criterion(GetParam().criterion, kit_data(4, 0));
+    // Of the candidates that it takes without a limit, and of those beside them.
+    Spacing limits;
+    limits.points = Eigen::VectorXd::Ones(10);
+    for (const int i : plan(space, poses, seed, 1).members) limits.points(i, 0) = 0;
+    limits.most = {allowed, poses};
+    const CandidateView view{&space.blocks(), 0, GetParam().repeats ? poses : 1, nullptr, &limits};
+    const double best = enumerated_optimum(*criterion, view, poses, GetParam().repeats);
+    const Design design = plan(space, poses, seed, 1, 0, 8, &limits);
+    ASSERT_EQ(design.members.size(), std::size_t(poses));
+    EXPECT_LE(std::ranges::count_if(design.members, [&](int i) { return limits.points(i, 0) == 0; }), allowed);
+    EXPECT_LE(design.value, best + 1e-9);
+    found += design.value > best - 1e-9;
+    if (GetParam().planner == "branch_and_bound") {
+      EXPECT_TRUE(design.optimal);
+      EXPECT_NEAR(design.value, best, 2e-9) << seed;
+    }
+  }
+  if (!constructs(GetParam().planner)) {
+    EXPECT_GE(found, 2) << "of 3 tiny problems";
+  }
 }
 
 TEST_P(PlannerKit, ReturnsExactlyNWithinTheRepeatPolicyAndBeatsRandomSets) {

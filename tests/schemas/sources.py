@@ -26,9 +26,10 @@ def allowed_keys():
         mapping, _, key = path.rpartition(".")
         below.setdefault(mapping, set()).add(key)
     found = {frozenset(keys) for keys in below.values()}
+    of_instruments = texts(re.search(r"^void allow_instrument\(.*?^}", readers()["read_measurement.cpp"], re.S | re.M)[0])
     for text in readers().values():
-        for arguments in re.findall(r"\.allow\(\s*\{(.*?)\}\s*\)", text, re.S):
-            keys = set(texts(arguments))
+        for call, arguments in re.findall(r"(\.allow\(|\ballow_instrument\(section, )\s*\{(.*?)\}\s*\)", text, re.S):
+            keys = set(texts(arguments)) | (set(of_instruments) if call.startswith("allow_") else set())
             for name in re.findall(r"(?<![\w\"])([a-z_]+)(?![\w\"])", LITERAL.sub("", arguments)):
                 for pair in re.findall(rf"\b{name} = \w+ \? \"(\w+)\" : \"(\w+)\"", text):
                     found.update(frozenset(keys | {one}) for one in pair)

@@ -1,8 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "posewright/cell/collision.hpp"
 #include "posewright/cell/line_of_sight.hpp"
@@ -14,11 +18,22 @@ namespace posewright {
 struct Cell {
   std::shared_ptr<const IdentificationModel> model;  ///< nominal one of the planned variant
   std::unique_ptr<const Collision> collision;        ///< null: nothing is checked
-  std::unique_ptr<const LineOfSight> sight;          ///< null: the instrument has no stations
+  /// Of the instrument, or of each in a list; null: it has no place.
+  std::vector<std::unique_ptr<const LineOfSight>> sights;
+  std::optional<std::size_t> instrument;  ///< coordinate that chooses among those of a list
   /// Deviation of an uncalibrated robot from its readings, per coordinate's name (rad or m): kept from
   /// its limits beside the margin.
   std::map<std::string, double> joint_margin;
-  bool sight_is_asked = false;  ///< whether line of sight constrains configurations and blocks
+
+  /// Index of the instrument that reads at q.
+  std::size_t instrument_at(std::span<const double> q) const { return instrument ? std::size_t(q[*instrument]) : 0; }
+  const LineOfSight* sight_at(std::span<const double> q) const { return sights[instrument_at(q)].get(); }
+  /// Of the problem's one instrument; null for a list.
+  const LineOfSight* sight() const { return instrument ? nullptr : sights.front().get(); }
+  /// True if lines of sight constrain configurations, and of one instrument alone the blocks.
+  bool sight_is_asked() const {
+    return std::ranges::any_of(sights, [](const auto& sight) { return sight != nullptr && sight->judges(); });
+  }
 };
 
 /// A station stands inside an obstacle or, at home, inside the robot.

@@ -33,12 +33,15 @@ struct Sight {
 /// Const and callable from several threads.
 class LineOfSight : public Visibility {
  public:
-  /// @param model      nominal one of the problem; must outlive this
-  /// @param collision  bodies that may hide a target; null: nothing does. Must outlive this.
-  /// Null for an instrument without stations and targets. Throws InputError if the problem's line_of_sight asks for
-  /// parts that the instrument lacks.
-  static std::unique_ptr<LineOfSight> make(const Problem& problem, const IdentificationModel& model,
-                                           const Collision* collision);
+  /// @param instrument  alone, or one of a list
+  /// @param asked       its line_of_sight; none: nothing is judged
+  /// @param model       nominal one of the problem; must outlive this
+  /// @param collision   bodies that may hide a target; null: nothing does. Must outlive this.
+  /// Null for an instrument without stations and targets. Throws InputError if line_of_sight asks for parts that the
+  /// instrument lacks.
+  static std::unique_ptr<LineOfSight> make(const ProblemFile& file, const MeasurementSpec& instrument,
+                                           const std::optional<LineOfSightSpec>& asked,
+                                           const IdentificationModel& model, const Collision* collision);
 
   int targets() const override { return int(targets_.size()); }
   /// Targets seen from the station of q (from every station where a pose is measured from all of them).
@@ -57,6 +60,8 @@ class LineOfSight : public Visibility {
   std::vector<Sight> sights(std::span<const double> q, int station) const;
   /// True if the problem limits the line of sight; else every target is visible.
   bool judges() const { return judges_; }
+  /// Line of the problem file that limits it.
+  int line() const { return spec_.line; }
   /// First and last of the stations that look at q: all of them (photogrammetry) or the one that is chosen.
   std::pair<int, int> stations_of(std::span<const double> q) const;
   /// True if the stations move with the tip (a camera in the hand).
@@ -90,9 +95,10 @@ class LineOfSight : public Visibility {
     std::optional<Eigen::Vector3d> normal;
   };
 
-  LineOfSight(const Problem& problem, const IdentificationModel& model, const Collision* collision);
-  void add_station(const InstrumentView::Place& place);
-  void add_points(const InstrumentView& view);
+  LineOfSight(const ProblemFile& file, const MeasurementSpec& instrument, const std::optional<LineOfSightSpec>& asked,
+              const IdentificationModel& model, const Collision* collision);
+  void add_station(const MeasurementSpec& instrument, const InstrumentView::Place& place);
+  void add_points(const MeasurementSpec& instrument, const InstrumentView& view);
   void add_normals(const ProblemFile& file);
   bool seen_from(std::span<const double> q, Looked& looked, int station, std::span<char> seen, int* reason,
                  bool past_bodies) const;
@@ -124,5 +130,11 @@ class LineOfSight : public Visibility {
   int station_coordinate_ = -1;
   std::uint64_t number_ = 0;  // among all that the program made
 };
+
+/// Lines of sight of the problem's instrument, or of each in its list; null where LineOfSight::make() gives none, and
+/// with several tips. Throws InputError as make(), and where a list stands beside workspace.line_of_sight, or its own
+/// beside several tips.
+std::vector<std::unique_ptr<const LineOfSight>> lines_of_sight(const Problem& problem, const IdentificationModel& model,
+                                                               const Collision* collision);
 
 }  // namespace posewright

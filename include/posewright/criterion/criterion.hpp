@@ -20,7 +20,7 @@ struct CandidateView {
   int max_repeats = 1;  ///< how often one candidate may be chosen
   /// Information that is there before any pose is measured (m × m, positive semidefinite); null: none.
   const Eigen::MatrixXd* prior = nullptr;
-  const Spacing* spacing = nullptr;  ///< which candidates are too near to each other to be chosen both; null: none
+  const Spacing* spacing = nullptr;  ///< which candidates may not be chosen together; null: all may
 };
 
 /// A change of a design: candidate `enter` comes in (in place of the member at a position, or as one more); `gain` is
@@ -60,7 +60,7 @@ class DesignState {
 
   /// A banned candidate may not enter.
   void ban(int candidate, bool banned);
-  /// True if the candidate may enter now under the repeat policy, the spacing and the bans.
+  /// True if the candidate may enter now under the repeat policy, the spacing with its limits, and the bans.
   bool may_enter(int candidate) const { return blocked_[std::size_t(candidate)] == 0; }
 
  protected:
@@ -74,11 +74,13 @@ class DesignState {
   /// `leave` or `enter` is −1 where nothing leaves or enters; members() are those after the change.
   virtual void do_change(int leave, int enter) = 0;
   void count(int candidate, int change);
+  void count_limit(int candidate, int change);
   void judge(int candidate);
 
   CandidateView view_;
   std::vector<int> members_;
   std::vector<int> used_, crowd_;
+  std::vector<int> free_;  // per value of the coordinate that the spacing limits: how many more may enter
   std::vector<unsigned char> banned_, blocked_;
 };
 

@@ -14,6 +14,14 @@ namespace posewright {
 /// Name of the coordinate that chooses among the instruments of a list.
 inline constexpr const char* instrument_coordinate = "instrument";
 
+/// One instrument of a list, with its robot.
+struct InstrumentOfList {
+  std::string name;
+  std::unique_ptr<ExplicitModel> model;  ///< of the robot at its nominal parameters
+  double noise_factor = 1.0;             ///< readings have so many times the noise of the model
+  std::vector<char> moving{};            ///< as moving_coordinates(); empty for all: of one tip
+};
+
 /// One robot and several instruments, of which one reads at each pose: the discrete coordinate `instrument`, the last,
 /// says which, and so which tip's pose counts where the instruments see several. Parameters: the robot's, once, then
 /// each instrument's own, as "target@NAME.P1.x" (name_in()). Rows and readings are those of all instruments, one after
@@ -22,11 +30,8 @@ inline constexpr const char* instrument_coordinate = "instrument";
 /// targets stand for the tool).
 class InstrumentChoice : public IdentificationModel {
  public:
-  /// @param models  robot and instrument each, of the same robot and at its nominal parameters
-  /// @param names   of the instruments, no two alike
-  /// @param moving  moving_coordinates()
-  InstrumentChoice(std::vector<std::unique_ptr<ExplicitModel>> models, const std::vector<std::string>& names,
-                   std::vector<std::vector<char>> moving = {});
+  /// @param instruments  of the same robot, no two names alike
+  explicit InstrumentChoice(std::vector<InstrumentOfList> instruments);
 
  private:
   bool do_linearise(const Point& at, std::span<const int> selected, Linearisation& out) const override;
@@ -50,6 +55,7 @@ class InstrumentChoice : public IdentificationModel {
   struct Part {
     std::unique_ptr<ExplicitModel> model;
     int first_row = 0, own = 0;  ///< `own`: index of its first own parameter
+    double variance = 1.0;       ///< of its readings, times that of the model
   };
   struct Inside;
   const Part& part_at(std::span<const double> q) const { return parts_[std::size_t(q.back())]; }

@@ -80,22 +80,6 @@ struct CollisionSpec {
   int line = 0;
 };
 
-/// Limits of the line of sight. Angles rad, lengths m.
-struct LineOfSightSpec {
-  int visible = 0;  ///< targets that must be seen; 0: all
-  std::optional<std::pair<double, double>> range, elevation, azimuth;
-  std::optional<double> field_of_view;  ///< half angle of a cone about `axis`
-  std::optional<Eigen::Vector3d> axis;  ///< unit, station frame; none: x, z of a camera
-  std::optional<double> acceptance;     ///< largest angle between a target's normal and the line to the station
-  std::vector<std::pair<Located<std::string>, Eigen::Vector3d>> normals;  ///< unit, tip frame (board frame of a camera)
-  double beam = 0.004;                                                    ///< m, radius that must be free
-  double target_radius = 0.01905;      ///< m, about the target, where nothing hides it: a 1.5 inch reflector
-  std::vector<StationSpec> stations;   ///< of instruments that have none of their own (photogrammetry of a pose)
-  std::vector<TargetSpec> references;  ///< measurement frame; measured again every `every` poses to watch drift
-  int every = 0;
-  int line = 0;
-};
-
 /// Limits of Σ factor · coordinate.
 struct CoupledLimits {
   std::vector<std::pair<Located<std::string>, double>> factors;
@@ -124,7 +108,7 @@ struct MotionSpec {
   double speed = 1.0;                ///< share of the velocities that is used
   double settle = 0.0;               ///< s, standstill at each pose before it is read
   double reading = 0.0;              ///< s, of one target in one reading
-  double station_change = 900;       ///< s, from one station to another
+  double station_change = 900;       ///< s, from one station or instrument to another
   double load_change = 300;          ///< s, from one load case to another
   double temperature_change = 3600;  ///< s, until the robot has another of the temperatures that are asked for
   bool reachable = false;            ///< every pose must be connected with home

@@ -2,7 +2,9 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -105,6 +107,22 @@ struct JointsMeasurement {
   Quantity quantity = Quantity::number;       ///< quantity of its written unit; number: none, so SI
 };
 
+/// Limits of the line of sight. Angles rad, lengths m.
+struct LineOfSightSpec {
+  int visible = 0;  ///< targets that must be seen; 0: all
+  std::optional<std::pair<double, double>> range, elevation, azimuth;
+  std::optional<double> field_of_view;  ///< half angle of a cone about `axis`
+  std::optional<Eigen::Vector3d> axis;  ///< unit, station frame; none: x, z of a camera
+  std::optional<double> acceptance;     ///< largest angle between a target's normal and the line to the station
+  std::vector<std::pair<Located<std::string>, Eigen::Vector3d>> normals;  ///< unit, tip frame (board frame of a camera)
+  double beam = 0.004;                                                    ///< m, radius that must be free
+  double target_radius = 0.01905;      ///< m, about the target, where nothing hides it: a 1.5 inch reflector
+  std::vector<StationSpec> stations;   ///< of instruments that have none of their own (photogrammetry of a pose)
+  std::vector<TargetSpec> references;  ///< measurement frame; measured again every `every` poses to watch drift
+  int every = 0;
+  int line = 0;
+};
+
 struct MeasurementSpec;
 /// Several instruments: each pose is read by one of them.
 struct InstrumentList {
@@ -124,13 +142,17 @@ struct Repeatability {
   double independent = 0.0;
 };
 
-/// Of a list, the other members are those of its instruments.
+/// Of a list, the other members are those of its instruments. Only those have line_of_sight, most, reading and setup.
 struct MeasurementSpec {
   InstrumentSpec instrument;
   std::string name;  ///< of an instrument of a list; else empty
   int repeats = 1;   ///< readings averaged per configuration
   Repeatability repeatability;
-  bool loaded_minus_unloaded = false;  ///< differences between each load case and the first one, at the same pose
+  std::optional<LineOfSightSpec> line_of_sight{};  ///< of an instrument of a list; of one alone the workspace has it
+  double noise_factor = 1.0;  ///< of an instrument of a list: its noise is so many times as stated, by measured data
+  std::optional<int> most{};  ///< poses that it may read; none: as many as are planned
+  std::optional<double> reading{}, setup{};  ///< s, as MotionSpec::reading and station_change, which count without
+  bool loaded_minus_unloaded = false;        ///< differences between each load case and the first one, at the same pose
   int line = 0;
   /// Of a robot with several tips, as names: the tip that is seen, and the one that carries the measurement frame,
   /// none: the robot's base.

@@ -109,6 +109,14 @@ struct Problem : ProblemFile {
   std::optional<CalibratedParameters> parameters;
 };
 
+/// Seconds that an instrument takes.
+struct InstrumentTimes {
+  double setup = 0.0;    ///< until its first pose
+  double reading = 0.0;  ///< of one target's readings at a pose
+  int in_turn = 1;       ///< targets that it reads one after the other
+};
+InstrumentTimes times_of(const MeasurementSpec& instrument, const MotionSpec& motion);
+
 /// Throws InputError at a list of instruments.
 /// @param what  works with one alone: "a route"
 void require_one_instrument(const Problem& problem, const std::string& what);

@@ -225,6 +225,7 @@ struct InstrumentWorth {
   std::string name;
   int poses = 0;       ///< that it reads
   double share = 0.0;  ///< tr(M_k ∂Φ/∂M) / tr(M ∂Φ/∂M), M_k its information; all shares and the prior's add to one
+  double setup = 0.0, reading = 0.0;  ///< s, before its first pose and of all its readings
   /// The plan without its poses: efficiency relative to the plan (0: the others leave parameters open), σ of the first
   /// variant's parameters by name, error to expect.
   double without = 0.0;

@@ -22,7 +22,7 @@ struct Study : Setup {
   std::string list{};                                ///< that the candidates came from; empty: they were drawn
   std::vector<std::string> notes{};                  ///< on the reading of the lists
   PoseDistance distance{};                           ///< that poses keep from each other
-  Spacing minimum_distance{};                        ///< with the candidates' points, where a distance is kept
+  std::optional<Spacing> spacing{};                  ///< among the candidates; none: all may be chosen together
   std::shared_ptr<const Discrepancy> discrepancy{};  ///< of the first variant; null: no truth is named
   std::string why_criterion{};                       ///< sentence about a criterion that was chosen; empty: none was
 };

@@ -41,6 +41,9 @@ std::string proved_percent(double share);
 /// "0.0123 mm", "0.0045 deg": a value in SI for messages, by its SI unit ("m", "rad", "1").
 std::string shown_value(double value, const std::string& unit);
 
+/// "85.3 s", "12.0 min"
+std::string seconds_text(double seconds);
+
 /// Variant with decimals for two digits of `resolution` (a σ, in SI).
 std::string shown_to(double value, double resolution, const std::string& unit);
 

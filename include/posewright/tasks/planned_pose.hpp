@@ -13,8 +13,8 @@ namespace posewright {
 /// Configuration, actuators, labels and tool pose of q.
 PlannedPose pose_of(const IdentificationModel& model, std::span<const double> q);
 
-/// Every target of q as its station sees it.
-std::vector<TargetSight> sights_of(const LineOfSight& sight, std::span<const double> q);
+/// Every target of q as its station sees it; none where the instrument that reads has no place.
+std::vector<TargetSight> sights_of(const Cell& cell, std::span<const double> q);
 TargetSight target_sight(const LineOfSight& sight, const Sight& s, int station);
 
 /// As it is written.

@@ -118,6 +118,7 @@ class CalibrationRun {
   Calibration estimate_alone(FitOptions& fit_options) {
     allow_for_unmodelled(fit_options);
     result_.correction = result_.fit.correction;
+    result_.instruments = instrument_residuals(*model_, columns_, fitted_, result_.fit);
     fill_parameters();
     report(2);
     return std::move(result_);

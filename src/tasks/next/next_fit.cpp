@@ -97,6 +97,10 @@ class FitSoFar {
     result_.freedom = found.fit.left;
     result_.problem = at_estimate(std::move(counting), spec_.name, found.values, options_.data);
     allow(variant_in(result_.problem, spec_.name).unmodelled, found);
+    for_each_instrument(result_.problem.measurement, [&](MeasurementSpec& instrument) {
+      for (const InstrumentResiduals& own : found.instruments)
+        if (own.name == instrument.name) instrument.noise_factor = own.noise_factor;
+    });
     result_.fitted = true;
   }
 

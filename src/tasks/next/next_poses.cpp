@@ -29,7 +29,7 @@ class NextRun {
   NextRun(const Problem& problem, const NextOptions& options, const Monitor& monitor)
       : options_(options), monitor_(monitor), known_(problem, options, monitor), study_(known_.study()) {
     candidates_ = study_.configurations;
-    spacing_ = study_.minimum_distance;
+    spacing_ = study_.spacing;
     result_.required = options.required ? options.required : problem.design.require.accuracy;
   }
 
@@ -97,7 +97,7 @@ class NextRun {
   /// The best that are feasible at the estimated values, too.
   Configurations search_for(const SearchParts& parts, const std::string& criterion, int poses) {
     SearchRequest request = search_request(study_, poses);
-    if (study_.distance.kept) request.spacing = &spacing_;
+    if (spacing_) request.spacing = &*spacing_;
     request.criterion = criterion;
     request.certify = false;
     request.planner.kicks = 0;
@@ -124,7 +124,7 @@ class NextRun {
     for (std::size_t i = 0; i < all.count(); ++i)
       if (study_.first().workspace->violation(all[i]) < 0) append(candidates_, all[i]);
     if (candidates_.count() == 0) throw CannotDo("no candidate is feasible at the estimated values");
-    if (study_.distance.kept) spacing_ = with_points(study_.distance.spacing, candidates_);
+    spacing_ = study_.distance.among(candidates_);
   }
 
   /// The pose that tells most first: whoever measures one only measures that.
@@ -279,16 +279,15 @@ class NextRun {
   const Monitor& monitor_;
   KnownSoFar known_;
   const Study& study_;
-  Configurations candidates_;    ///< of the study, feasible at the estimated values
-  Spacing spacing_;              ///< between them, where a distance is kept
-  Eigen::MatrixXd information_;  ///< from before, on the columns of the search
+  Configurations candidates_;       ///< of the study, feasible at the estimated values
+  std::optional<Spacing> spacing_;  ///< among them
+  Eigen::MatrixXd information_;     ///< from before, on the columns of the search
   NextPoses result_;
 };
 
 }  // namespace
 
 NextPoses next_poses(const Problem& problem, const NextOptions& options, const Monitor& monitor) {
-  require_one_instrument(problem, "next");
   return NextRun(problem, options, monitor).run();
 }
 

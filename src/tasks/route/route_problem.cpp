@@ -13,6 +13,7 @@
 #include "nearest_turn.hpp"
 #include "posewright/lists/parameters_file.hpp"
 #include "posewright/lists/read_poses.hpp"
+#include "posewright/model/instrument_choice.hpp"
 #include "posewright/model/variant_columns.hpp"
 #include "posewright/route/tour.hpp"
 #include "posewright/study/written_plan.hpp"
@@ -39,12 +40,6 @@ struct Stop {
   PlannedPose pose;
 };
 
-/// A tracker follows one target after the other; what else there is reads all at once.
-bool reads_in_turn(const MeasurementSpec& measurement) {
-  const auto* points = std::get_if<PointsMeasurement>(&measurement.instrument);
-  return points != nullptr && std::holds_alternative<TrackerNoise>(points->noise);
-}
-
 /// Time of changing a choice by hand.
 constexpr std::pair<const char*, double MotionSpec::*> change_times[] = {
     {"station", &MotionSpec::station_change},
@@ -69,7 +64,6 @@ class Router {
     route_.closed = options.closed;
     route_.from_home = options.from_home;
     route_.settle = options.settle.value_or(problem.workspace.motion.settle);
-    one_reading_ = options.reading.value_or(problem.workspace.motion.reading) * problem.measurement.repeats;
     for (const Coordinate& c : space_.coordinates()) {
       route_.names.push_back(c.name);
       route_.units.push_back(c.unit);
@@ -111,7 +105,7 @@ class Router {
       if (q != list.configurations[i]) turned_.push_back(id);
       Stop stop{id, q, pose_of(*variant_.model, q)};
       stop.pose.id = stop.id;
-      if (cell_->sight != nullptr) stop.pose.sights = sights_of(*cell_->sight, stop.configuration);
+      stop.pose.sights = sights_of(*cell_, stop.configuration);
       stops_.push_back(std::move(stop));
     }
     for_each("poses", stops_.size(), [&](std::size_t i) {
@@ -243,13 +237,21 @@ class Router {
     if (options_.from_home) open_.insert(open_.begin(), 0);
   }
 
-  /// Time of moving the instrument or changing the load between two stops, s.
+  /// Instrument that reads a stop.
+  const MeasurementSpec& instrument_of(const std::vector<double>& configuration) const {
+    return instrument_at(problem_.measurement, variant_.workspace->coordinates(), configuration);
+  }
+
+  /// Time of moving or setting up the instrument, or of changing the load, from one stop to the other, s.
   double change(int i, int j) const {
     if (i == 0 || j == 0) return 0.0;
     const PlannedPose &a = stops_[std::size_t(i)].pose, &b = stops_[std::size_t(j)].pose;
     double seconds = 0.0;
     for (const auto& [name, time] : change_times)
       if (label_of(a.choices, name) != label_of(b.choices, name)) seconds += problem_.workspace.motion.*time;
+    const MeasurementSpec& next = instrument_of(stops_[std::size_t(j)].configuration);
+    if (&next != &instrument_of(stops_[std::size_t(i)].configuration))
+      seconds += times_of(next, problem_.workspace.motion).setup;
     return seconds;
   }
 
@@ -257,6 +259,13 @@ class Router {
     if (!motions_->known(i, j)) return change(i, j) + motions_->at_least(i, j);
     const Motion& motion = motions_->between(i, j);
     return motion.points.empty() ? no_way : change(i, j) + motion.seconds;
+  }
+
+  /// The same whichever of two stops comes first, as a tour's search needs it.
+  double cost_either_way(int i, int j) {
+    const auto [a, b] = std::minmax(i, j);
+    const double there = cost(a, b);
+    return there >= no_way ? no_way : there + (change(b, a) - change(a, b)) / 2;
   }
 
   std::vector<std::pair<int, int>> legs(const std::vector<int>& order) const {
@@ -294,7 +303,7 @@ class Router {
       Eigen::MatrixXd costs = Eigen::MatrixXd::Zero(n, n);
       for (Eigen::Index a = 0; a < n; ++a)
         for (Eigen::Index b = 0; b < n; ++b)
-          if (a != b) costs(a, b) = cost(open_[std::size_t(std::min(a, b))], open_[std::size_t(std::max(a, b))]);
+          if (a != b) costs(a, b) = cost_either_way(open_[std::size_t(a)], open_[std::size_t(b)]);
       order.clear();
       for (const int k : cheapest_tour(costs, tour)) order.push_back(open_[std::size_t(k)]);
       const auto pairs = legs(order);
@@ -343,17 +352,20 @@ class Router {
       // Before anything else, after every so many poses, and at the end, so that drift is bracketed.
       const bool with_references = every > 0 && (done == 1 || done % std::size_t(every) == 0 || i == order.back());
       if (with_references) add_references(i);
-      if (one_reading_ > 0)
-        route_.reading.push_back(readings_of(route_.poses.back().sights) +
-                                 (with_references ? readings_of(route_.references.back().sights) : 0.0));
+      const MeasurementSpec& instrument = instrument_of(stops_[std::size_t(i)].configuration);
+      route_.reading.push_back(readings_of(instrument, route_.poses.back().sights) +
+                               (with_references ? readings_of(instrument, route_.references.back().sights) : 0.0));
     }
+    if (route_.reading_seconds() == 0) route_.reading.clear();
   }
 
   /// Seconds of reading these targets, those that are seen: of a pose or of references.
-  double readings_of(const std::vector<TargetSight>& sights) const {
-    if (!reads_in_turn(problem_.measurement) || sights.empty()) return one_reading_;
-    const auto seen = std::count_if(sights.begin(), sights.end(), [](const auto& s) { return s.hidden_by.empty(); });
-    return one_reading_ * double(seen);
+  double readings_of(const MeasurementSpec& instrument, const std::vector<TargetSight>& sights) const {
+    const InstrumentTimes times = times_of(instrument, problem_.workspace.motion);
+    const double one = options_.reading ? *options_.reading * instrument.repeats : times.reading;
+    // Without lines of sight it sees all of them.
+    if (times.in_turn == 1 || sights.empty()) return one * times.in_turn;
+    return one * double(std::ranges::count_if(sights, [](const auto& s) { return s.hidden_by.empty(); }));
   }
 
   /// Nearest pair of bodies on the way.
@@ -370,9 +382,9 @@ class Router {
   void add_references(int stop) {
     ReferenceCheck check{stops_[std::size_t(stop)].id, {}};
     const std::vector<double>& q = stops_[std::size_t(stop)].configuration;
-    const int station = cell_->sight->station_of(q);
-    for (const Sight& s : cell_->sight->reference_sights(q, station))
-      check.sights.push_back(target_sight(*cell_->sight, s, station));
+    const LineOfSight& sight = *cell_->sight();
+    const int station = sight.station_of(q);
+    for (const Sight& s : sight.reference_sights(q, station)) check.sights.push_back(target_sight(sight, s, station));
     route_.references.push_back(std::move(check));
   }
 
@@ -384,10 +396,9 @@ class Router {
   Variant variant_;
   MotionSpace space_;
   Route route_;
-  double one_reading_ = 0.0;  // s, of one target where they are read in turn
-  std::vector<Stop> stops_;   // the first is home
-  std::vector<int> turned_;   // ids
-  std::vector<int> open_;     // stops that can be reached, home too where the route begins there
+  std::vector<Stop> stops_;  // the first is home
+  std::vector<int> turned_;  // ids
+  std::vector<int> open_;    // stops that can be reached, home too where the route begins there
   std::unique_ptr<Motions> motions_;
 };
 
@@ -432,7 +443,6 @@ Route route_problem(const Problem& problem, const PoseList& poses, const RouteOp
                     const Monitor& monitor) {
   const auto begin = std::chrono::steady_clock::now();
   require_at_most(poses, most_routed, "route orders");
-  require_one_instrument(problem, "a route");
   Route route = routed(problem, poses, options, monitor);
   PoseList list = poses;
   for (int round = 0; options.replace && round < most_rounds && !route.unreachable.empty() && !route.interrupted;

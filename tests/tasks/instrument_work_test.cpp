@@ -1,0 +1,165 @@
+// What follows the choice of instruments: limits, times, routes, next poses and lines of sight of each. The second
+// roads: counts and sums by hand, and the arm's own geometry.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "posewright/lists/read_poses.hpp"
+#include "posewright/tasks/evaluate_problem.hpp"
+#include "posewright/tasks/next_poses.hpp"
+#include "posewright/tasks/plan_problem.hpp"
+#include "posewright/tasks/route_problem.hpp"
+#include "tests/kit/planar_instruments.hpp"
+#include "tests/kit/pose_lists.hpp"
+
+namespace posewright {
+namespace {
+
+using testing::HasSubstr;
+
+/// With further keys for the tracker and the gauge.
+std::string with_keys(const std::string& tracker, const std::string& gauge) {
+  const std::string text =
+      replaced_once(planar_problem, "repeatability: 30 um}", "repeatability: 30 um, " + tracker + "}");
+  return replaced_once(text, "noise: 10 um}}", "noise: 10 um}, " + gauge + "}");
+}
+
+long read_by(const Plan& plan, const std::string& instrument) {
+  return std::ranges::count_if(plan.poses, [&](const PlannedPose& pose) {
+    return !pose.measured && label_of(pose.choices, "instrument") == instrument;
+  });
+}
+
+TEST(InstrumentLimits, EveryMethodKeepsThemAndTheCertificateCountsThem) {
+  for (const char* method : {"exchange", "auto", "greedy", "tabu", "continuous"}) {
+    Planar limited(with_keys("most: 8", "most: 1"));
+    limited.problem.design.method.value = method;
+    const Plan plan = plan_problem(limited.problem, {}, Monitor{});
+    EXPECT_EQ(plan.poses.size(), 8U) << method;
+    EXPECT_LE(read_by(plan, "gauge"), 1) << method;
+    ASSERT_TRUE(plan.certificate.proved);
+    EXPECT_LE(plan.certificate.efficiency, 1.0) << method;
+    EXPECT_GT(plan.certificate.efficiency, 0.85) << method;
+  }
+  // Without the limit the gauge reads most of the poses.
+  const Planar free;
+  EXPECT_GT(read_by(plan_problem(free.problem, {}, Monitor{}), "gauge"), 1);
+}
+
+TEST(InstrumentLimits, APlanIsJudgedByTheSameLimit) {
+  const Planar limited(with_keys("most: 8", "most: 1"));
+  const Plan plan = plan_problem(limited.problem, {}, Monitor{});
+  const PoseList list = planned_poses(limited.problem, plan);
+  EXPECT_NEAR(evaluate_problem(limited.problem, list, {}, Monitor{}).plan.certificate.efficiency,
+              plan.certificate.efficiency, 1e-3);
+}
+
+TEST(InstrumentLimits, MeasuredPosesCount) {
+  const Planar limited(with_keys("most: 8", "most: 1"));
+  RunOptions more;
+  more.measured = planned_poses(limited.problem, plan_problem(limited.problem, {}, Monitor{}));
+  const auto already =
+      std::ranges::count_if(more.measured->configurations, [](const auto& q) { return q.back() == 1; });
+  ASSERT_EQ(already, 1);
+  Problem problem = limited.problem;
+  problem.design.poses->value = 1;
+  EXPECT_EQ(read_by(plan_problem(problem, more, Monitor{}), "gauge"), 0);
+  problem.design.poses->value = 2;
+  EXPECT_THAT(
+      complaint_of([&] { plan_problem(problem, more, Monitor{}); }),
+      HasSubstr("p.yaml:3: measurement: its instruments may read 1 poses more by their `most`, and 2 are wanted"));
+}
+
+TEST(InstrumentLimits, AnInstrumentAloneHasItsKeysElsewhere) {
+  for (const char* key : {"most: 3", "reading: 2 s", "setup: 1 min", "line_of_sight: {range: [1, 2]}"})
+    EXPECT_THAT(complaint_of([&] {
+                  Planar(replaced_once(R"(posewright: 1
+robot: {urdf: arm.urdf}
+measurement: {type: position, target: [0, 0, 0], KEY, device: {type: isotropic, noise: 20 um}}
+variants:
+  arm: {parameters: [q1.offset]}
+)",
+                                       "KEY", key));
+                }),
+                HasSubstr("is for an instrument of a list"));
+}
+
+TEST(InstrumentRoute, CountsSetUpAndReadingsOfEachInstrument) {
+  const Planar timed(with_keys("reading: 20 s, setup: 10 min", "reading: 3 s, repeats: 4, setup: 5 min, most: 5"));
+  const Plan plan = plan_problem(timed.problem, {}, Monitor{});
+  const double tracker = double(read_by(plan, "tracker")), gauge = double(read_by(plan, "gauge"));
+  ASSERT_GT(tracker * gauge, 0);
+  EXPECT_EQ(plan.instruments[0].setup, 600);
+  EXPECT_EQ(plan.instruments[1].setup, 300);
+  EXPECT_EQ(plan.instruments[0].reading, 20 * tracker);
+  EXPECT_EQ(plan.instruments[1].reading, 12 * gauge);
+  const Route route = route_problem(timed.problem, planned_poses(timed.problem, plan), {}, Monitor{});
+  ASSERT_EQ(route.poses.size(), plan.poses.size());
+  EXPECT_DOUBLE_EQ(route.reading_seconds(), 20 * tracker + 12 * gauge);
+  // One change, to the instrument that reads second.
+  int changes = 0;
+  for (std::size_t i = 1; i < route.poses.size(); ++i)
+    changes += label_of(route.poses[i].choices, "instrument") != label_of(route.poses[i - 1].choices, "instrument");
+  EXPECT_EQ(changes, 1);
+  EXPECT_DOUBLE_EQ(route.change_seconds(), label_of(route.poses.back().choices, "instrument") == "gauge" ? 300 : 600);
+}
+
+TEST(InstrumentNext, AnInstrumentThatShowsMoreNoiseIsAskedLess) {
+  const auto next_reads = [](double gauge_noise) {
+    const Planar planar;
+    NextOptions options;
+    options.data = planar.folder.path() / "data.csv";
+    options.text = PlanarReadings(5, gauge_noise).csv;
+    options.poses = 3;
+    const NextPoses next = next_poses(planar.problem, options, Monitor{});
+    EXPECT_TRUE(next.fitted);
+    EXPECT_EQ(next.measured, 60);
+    EXPECT_EQ(next.poses.size(), 3U);
+    return std::ranges::count_if(
+        next.poses, [](const PlannedPose& pose) { return label_of(pose.choices, "instrument") == "gauge"; });
+  };
+  EXPECT_EQ(next_reads(1), 3);
+  EXPECT_EQ(next_reads(40), 0);
+}
+
+TEST(InstrumentSight, HoldsForTheInstrumentThatReads) {
+  const std::string stands = replaced_once(with_keys("line_of_sight: {range: [1.2, 2.2]}", "most: 4"), "noise: 20 um}",
+                                           "noise: 20 um, stations: {S: [3, 0, 0]}}");
+  const Planar seen(stands);
+  const Plan plan = plan_problem(seen.problem, {}, Monitor{});
+  const auto distance = [](const std::vector<double>& q, const Eigen::Vector2d& on_tip) {
+    return (PlanarReadings::point(Eigen::Vector3d::Zero(), q[0], q[1], on_tip) - Eigen::Vector2d(3, 0)).norm();
+  };
+  const std::vector<std::vector<double>> poses = planned_poses(seen.problem, plan).configurations;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (poses[i].back() == 1) {
+      EXPECT_TRUE(plan.poses[i].sights.empty()) << "a gauge looks from nowhere";
+      continue;
+    }
+    const double d = distance(poses[i], {0.05, 0.02});
+    EXPECT_GE(d, 1.2);
+    EXPECT_LE(d, 2.2);
+    ASSERT_EQ(plan.poses[i].sights.size(), 1U);
+    EXPECT_NEAR(plan.poses[i].sights.front().distance, d, 1e-12);
+  }
+  // Poses of the gauge lie anywhere: without a tracker there is nothing to be seen.
+  const Variant variant = make_variant(seen.problem, {}, Monitor{});
+  EXPECT_GE(variant.workspace->violation(std::vector{1.9, 1.9, 0.0}), 0);
+  EXPECT_LT(variant.workspace->violation(std::vector{1.9, 1.9, 1.0}), 0);
+  EXPECT_THAT(complaint_of([&] {
+                const Planar both(stands + "workspace: {line_of_sight: {range: [0.1, 5]}}\n");
+                plan_problem(both.problem, {}, Monitor{});
+              }),
+              HasSubstr("each instrument has its own key line_of_sight"));
+  EXPECT_THAT(complaint_of([&] {
+                const Planar gauge(with_keys("most: 8", "line_of_sight: {range: [1, 2]}"));
+                plan_problem(gauge.problem, {}, Monitor{});
+              }),
+              HasSubstr("gauge: line_of_sight: the instrument has no position"));
+}
+
+}  // namespace
+}  // namespace posewright

@@ -235,6 +235,11 @@ async function checkStop(page) {
   await page.close({ runBeforeUnload: true });
   for (let k = 0; k < 50 && asked === 0; k++) await new Promise((resolve) => setTimeout(resolve, 100));
   check(asked === 1, 'a page that plans asks before it is left', asked);
+  const other = await page.context().newPage();
+  await other.goto(page.url());
+  await other.waitForFunction(() => document.querySelector('.yaml')?.value.length > 0);
+  check((await text(other)) === (await text(page)), 'and its problem is there in another tab, should this one be lost');
+  await other.close();
   await stop.click();
 }
 
@@ -303,6 +308,31 @@ async function checkMeasured(page) {
   check((await page.getByRole('button', { name: 'my arm.yaml' }).count()) === 1, 'keeps its name');
   await redrawn(page, () => page.getByRole('button', { name: 'Undo' }).click());
   check((await text(page)) === before, 'and can be undone');
+}
+
+/** A thousand poses of a UR5 before a laser tracker: the residuals are those of the native program. */
+async function checkRealData(page) {
+  about('real data');
+  const data = join(root, '../shared/data/ur5_gts3800');
+  if (!existsSync(data)) return console.log('Left out: real data (../shared is missing)');
+  const folder = join(out, 'real');
+  const example = join(root, 'examples/real_data/ur5_gts3800');
+  mkdirSync(folder, { recursive: true });
+  execFileSync('/usr/bin/python3', [join(example, 'convert.py'), data, folder]);
+  await step(page, /Robot/);
+  await redrawn(page, () => page.locator('#step-0 input[type=file]').first().setInputFiles(['problem.yaml', 'ur5.urdf'].map((name) => join(example, name))));
+  await page.evaluate(() => document.querySelector('#result iframe')?.remove());
+  await step(page, /Measured/);
+  const start = performance.now();
+  await page.locator('#step-5 input[type=file]').first().setInputFiles(join(folder, 'grid.csv'));
+  await page.locator('#result iframe').waitFor();
+  console.log(`1,000 poses are calibrated and drawn after ${((performance.now() - start) / 1000).toFixed(1)} s`);
+  const shown = JSON.parse(await page.frameLocator('#result iframe').locator('#report-data').textContent()).result;
+  const words = ['calibrate', join(example, 'problem.yaml'), 'grid.csv', '--json', '--quiet', '--force', '-o', 'calibrated.yaml'];
+  const native = JSON.parse(execFileSync(resolve(values.program), words, { cwd: folder, encoding: 'utf8', stdio: ['ignore', 'pipe', 'ignore'], maxBuffer: 1e8 }));
+  check(shown.verdict === native.verdict && shown.poses.length === 1000, 'verdict and poses are those of the native program', `${shown.verdict}, ${shown.poses.length} poses`);
+  const apart = Math.max(...shown.poses.flatMap((p, k) => p.residuals.map((v, i) => Math.abs(v - native.poses[k].residuals[i]))));
+  check(apart < 1e-9, 'so are the residuals', apart);
 }
 
 /** More candidates than 4 GB hold are refused before they are drawn, and nothing is lost. */
@@ -418,6 +448,7 @@ await checkPlan(page);
 await checkMove(page);
 await checkStop(page);
 await checkMeasured(page);
+await checkRealData(page);
 await checkMemory(page);
 await checkMovingBase(page);
 await checkBadInput(page);

@@ -66,4 +66,11 @@ const dropped = new Map([['x/joint_limits.yaml', bytes('joint_limits: {}\n')], [
 assert.deepEqual(problemsAmong(dropped), ['x/problem.yaml', 'x/cell.yml']);
 assert.equal(planAmong(new Map([['a.json', bytes('{}')], ['left.json', bytes('{\n "schema": "posewright/plan/1",\n')]])), 'left.json');
 assert.equal(planAmong(files), undefined);
+
+// Of several instruments those that stand still are moved, each in its own entry of the list.
+const both = readFileSync(new URL('../../examples/instruments/tracker_and_camera.yaml', import.meta.url), 'utf8');
+assert.deepEqual(changed(both, moved(both, thing(both, 'tracker, station T'), [4.5, 0, 1])), ['      stations: {T: [4.5, 0, 1]}']);
+assert.equal(changed(both, moved(both, thing(both, 'camera, Board'), [2, 0, 1])).length, 1);
+const hands = readFileSync(new URL('../../examples/humanoid/both_hands.yaml', import.meta.url), 'utf8');
+assert.deepEqual(thingsOf(hands).filter((t) => t.step === 'instrument').map((t) => t.label), ['tracker, station T']);
 console.log('Edits keep the text, messages have their lines.');

@@ -98,6 +98,7 @@ async function checkCell(page) {
 /** A drag in the picture changes the text. */
 async function checkDrag(page) {
   await step(page, /Instrument/);
+  check(!(await page.getByRole('combobox', { name: 'Camera' }).isVisible()), 'a tracker asks for no camera');
   const before = await text(page);
   await page.getByRole('button', { name: 'Top' }).click();
   await page.waitForTimeout(500);

@@ -1,5 +1,5 @@
 // Builds the page that plans: one file with the program in it.
-// node build_live.mjs WASM_FOLDER OUT.html [ADDRESS]   WASM_FOLDER has posewright.js and posewright.wasm
+// node build_live.mjs WASM_FOLDER OUT.html [ADDRESS]   WASM_FOLDER has posewright.js, posewright.wasm and LICENSES.txt
 // ADDRESS is one that the page may connect to, for trials with a program outside the page; none in a page that is given away.
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -34,13 +34,13 @@ const text = filled('src/live/index.html', {
   STYLE: styles,
   LOADER: loader,
   PACKED: packed(whole),
-  LICENSES: licences(['three', 'yaml']).replaceAll('--', '- -'),
   SCRIPT_HASHES: `'${hash(loader)}' '${hash(whole)}' ${reportHashes('script-src')}`,
   STYLE_HASHES: `'${hash(styles)}' ${reportHashes('style-src')}`,
   CONNECT: address ?? "'none'",
   EXAMPLES: JSON.stringify(examples).replaceAll('<', '\\u003c'),
   PROGRAM_SCRIPT: packed(program),
   PROGRAM_WASM: packed(wasmBytes),
+  LICENCES: packed([read('../LICENSE'), readFileSync(join(wasm, 'LICENSES.txt'), 'utf8'), '==== yaml', licences(['yaml'])].join('\n')),
   VERSION: read('../CMakeLists.txt').match(/VERSION (\d+\.\d+\.\d+)/)[1],
 });
 writeFileSync(out, text);

@@ -73,7 +73,8 @@ wasm_library(boost_program_options boost SOURCES
 target_link_libraries(boost_program_options PUBLIC Boost::headers)
 wasm_library(qhull qhull INCLUDE src SOURCES src/libqhull_r/*_r.c)
 
-wasm_library(nlopt nlopt INCLUDE src/api SOURCES src/api/*.c src/util/*.c src/algs/*/*.c)
+wasm_library(nlopt nlopt INCLUDE src/api SOURCES src/api/*.c src/util/[!q]*.c src/algs/*/*.c)
+target_sources(nlopt PRIVATE ${CMAKE_CURRENT_LIST_DIR}/qsort_r.c)
 set(NLOPT_MAJOR_VERSION 2)
 set(NLOPT_BUGFIX_VERSION 0)
 set(NLOPT_MINOR_VERSION 7)

@@ -20,14 +20,17 @@ configure_file(${PROJECT_SOURCE_DIR}/npm/package.json.in ${package}/package.json
 configure_file(${PROJECT_SOURCE_DIR}/npm/posewright.mjs ${package}/posewright.mjs COPYONLY)
 configure_file(${PROJECT_SOURCE_DIR}/npm/README.md ${package}/README.md COPYONLY)
 configure_file(${PROJECT_SOURCE_DIR}/LICENSE ${package}/LICENSE COPYONLY)
-file(GLOB licences ${wasm_sources}/*/LICENSE* ${wasm_sources}/*/COPYING* ${wasm_sources}/*/BSD-LICENSE
+# Licences of all that is in posewright.wasm; NLopt's parts have their own. emscripten's file has those of its C and C++ libraries.
+file(GLOB licences ${wasm_sources}/*/LICENSE* ${wasm_sources}/*/COPYING* ${wasm_sources}/*/BSD-LICENSE ${wasm_sources}/nlopt/src/algs/*/COPY*
+  ${PROJECT_SOURCE_DIR}/report/dist/LICENSES.txt
   /usr/share/doc/libeigen3-dev/copyright /usr/share/doc/nlohmann-json3-dev/copyright /usr/share/doc/emscripten/copyright)
 file(WRITE ${package}/LICENSES.txt "Licences of the libraries in posewright.wasm\n")
 foreach(licence IN LISTS licences)
   file(READ ${licence} text)
-  string(REGEX REPLACE "^(${wasm_sources}|/usr/share/doc)/" "" name ${licence})
+  string(REGEX REPLACE "^(${wasm_sources}|${PROJECT_SOURCE_DIR}|/usr/share/doc)/" "" name ${licence})
   file(APPEND ${package}/LICENSES.txt "\n==== ${name}\n\n${text}")
 endforeach()
+file(COPY ${package}/LICENSES.txt DESTINATION ${PROJECT_BINARY_DIR}/page)
 # From -O2 on the linker would optimise each of both, for minutes.
 find_program(POSEWRIGHT_WASM_OPT wasm-opt REQUIRED)
 add_custom_command(TARGET posewright_program POST_BUILD

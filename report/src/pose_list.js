@@ -18,7 +18,7 @@ export class PoseList extends EventTarget {
       poses: new Map(report.plan.poses.map((p) => [p.id, p])),
       keyframes: new Map(report.keyframes.filter((k) => k.pose).map((k) => [k.pose, k])),
       blocks: new Map(this.engine.blocks),
-      pictures: new Map((report.camera?.pictures ?? []).map((p) => [p.pose, p.pixels])),
+      pictures: new Map(report.cameras.flatMap((c) => c.pictures).map((p) => [p.pose, p.pixels])),
     };
     this.unreachable = new Map((report.route?.unreachable ?? []).map((u) => [u.pose, u.reason]));
     this.#restore();

@@ -25,7 +25,8 @@
  * @property {Placement[]} frames one per entry of Report.frames
  * @property {Point[][]} lines skeleton, polylines
  * @property {Placement} tip
- * @property {(Point|null)[]} targets
+ * @property {(Point|null)[]} targets null: of an instrument that does not read here
+ * @property {string} [instrument] of several: that reads
  *
  * @typedef {{name: string, unit: string, tolerance: number, role: 'interest'|'nuisance', variant: string}} Column
  * @typedef {{poses: number, log_det: number|null, rho0: number|null, largest_sigma_ratio: number|null}} CurvePoint
@@ -40,9 +41,9 @@
  * @property {([number, number]|null)[]|null} pixels as Camera.pictures
  *
  * @typedef {object} Camera
- * @property {boolean} on_tip the camera rides on the tip, the board does not; else the other way
- * @property {Placement} camera in what carries it
- * @property {Placement} board
+ * @property {string} [instrument] of several: its name
+ * @property {{frame: number, placement: Placement}} camera in the frame that carries it
+ * @property {{frame: number, placement: Placement}} board
  * @property {[number, number]} size px
  * @property {Point[]} corners lines of sight of the picture's corners, camera frame
  * @property {string[]} names
@@ -62,14 +63,14 @@
  * @property {any} route route.json or null
  * @property {string[]} frames
  * @property {Body[]} bodies
- * @property {{name: string, placement: Placement}[]} stations
- * @property {string[]} targets
+ * @property {{name: string, instrument?: string, placement: Placement}[]} stations instrument: of several
+ * @property {string[]} targets of several instruments as "tracker.P1"
  * @property {Keyframe[]} keyframes
  * @property {Column[]} columns nuisance first
  * @property {Information} information
  * @property {number[]} singular_values
  * @property {Candidates|null} candidates
- * @property {Camera|null} camera
+ * @property {Camera[]} cameras
  * @property {number[]} [position_errors] predicted at feasible configurations, m
  * @property {CurvePoint[]} curve
  * @property {(CurvePoint|null)[]} prefix after the first, second, … pose; null where not identifiable yet

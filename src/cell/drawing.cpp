@@ -5,6 +5,7 @@
 #include <set>
 
 #include "mesh_file.hpp"
+#include "posewright/model/campaigns.hpp"
 #include "posewright/model/link_geometry.hpp"
 #include "posewright/model/model_factory.hpp"
 #include "posewright/model/nominal_placement.hpp"
@@ -108,7 +109,18 @@ Drawing::Drawing(const Problem& problem, const Cell& cell)
     if (tip_ != nullptr) frame_names_.emplace_back("platform");
   }
   add_bodies(problem);
-  add_instrument(problem.measurement, cell);
+  if (const std::vector<MeasurementSpec>* list = instruments_of(problem.measurement)) {
+    for (std::size_t k = 0; k < list->size(); ++k) {
+      instruments_.push_back((*list)[k].name);
+      add_instrument((*list)[k], int(k));
+    }
+    return;
+  }
+  add_instrument(problem.measurement, 0);
+  const LineOfSight* sight = cell.sight();
+  if (sight == nullptr || sight->rides_on_tip()) return;
+  for (std::size_t s = 0; s < sight->stations().size(); ++s)
+    stations_.push_back({"", sight->stations()[s], sight->X_MeasureStation({}, int(s))});
 }
 
 Drawing::~Drawing() = default;
@@ -143,36 +155,54 @@ void Drawing::keep_to_budget() {
     body.mesh = thinned(body.mesh, std::size_t(share * double(body.mesh.triangles.size())));
 }
 
-void Drawing::add_instrument(const MeasurementSpec& measurement, const Cell& cell) {
-  for (const TargetSpec& target : view_of(measurement).targets) {
-    target_names_.push_back(target.name);
-    targets_.push_back(target.position);
+Carried Drawing::carried(const MeasurementSpec& measurement, bool on_tip, const std::string& parameters,
+                         const Placement& placement) const {
+  BodyFrames::Tip carrier;
+  if (arm_ == nullptr) carrier.frame = on_tip ? int(frame_names_.size()) - 1 : 0;
+  else if (on_tip) carrier = arm_->tip(measurement.of ? measurement.of->value : "");
+  else if (measurement.in) carrier = arm_->tip(measurement.in->value);
+  const std::string& instrument = measurement.name;
+  const std::string own = instrument.empty() ? parameters : name_in(instrument, parameters);
+  return {carrier.frame, carrier.X_FrameTip * nominal_placement(model_->parameters(), own, isometry(placement))};
+}
+
+void Drawing::add_camera(const MeasurementSpec& measurement, const InstrumentView& view) {
+  const InstrumentView::Place& place = view.places.front();
+  DrawnCamera camera;
+  camera.instrument = measurement.name;
+  camera.camera = carried(measurement, view.places_on_tip, place.parameters, place.station.placement);
+  camera.board = carried(measurement, view.points_on_tip, view.points_parameters, view.points_at);
+  camera.image = *view.image;
+  for (const InstrumentView::Point& point : view.points) camera.points.emplace_back(point.name, point.position);
+  cameras_.push_back(std::move(camera));
+}
+
+void Drawing::add_instrument(const MeasurementSpec& measurement, int index) {
+  const InstrumentView view = view_of(measurement);
+  const std::string& name = measurement.name;
+  for (const TargetSpec& target : view.targets) {
+    target_names_.push_back(name.empty() ? target.name : name + "." + target.name);
+    targets_.emplace_back(index, target.position);
   }
-  if (const InstrumentView view = view_of(measurement); view.image && !view.places.empty()) {
-    const auto placed = [&](const std::string& name, const Placement& placement) {
-      return nominal_placement(model_->parameters(), name, isometry(placement));
-    };
-    camera_ = DrawnCamera{view.places_on_tip,
-                          placed(view.places.front().parameters, view.places.front().station.placement),
-                          *view.image,
-                          placed(view.points_parameters, view.points_at),
-                          {}};
-    for (const InstrumentView::Point& point : view.points) camera_->points.emplace_back(point.name, point.position);
-  }
-  for (const auto& sight : cell.sights)
-    for (std::size_t s = 0; sight != nullptr && !sight->rides_on_tip() && s < sight->stations().size(); ++s)
-      stations_.emplace_back(sight->stations()[s], sight->X_MeasureStation({}, int(s)));
+  if (view.image && !view.places.empty() && frame_names_.size() > 1) add_camera(measurement, view);
+  // Of one alone they stand in the cell's lines of sight; and a camera is drawn as one.
+  if (name.empty() || view.image || view.places_on_tip || measurement.in) return;
+  for (const InstrumentView::Place& place : view.places)
+    stations_.push_back({name, place.station.name,
+                         carried(measurement, false, place.parameters, place.station.placement).X_FrameThing});
 }
 
 DrawnPose Drawing::at(std::span<const double> q) const {
   DrawnPose pose;
+  const int reader = instruments_.empty() ? 0 : int(q.back());
+  if (!instruments_.empty()) pose.instrument = instruments_[std::size_t(reader)];
   if (arm_ != nullptr) {
     pose.frames.resize(std::size_t(arm_->count()));
     arm_->poses(q, 0, pose.frames);
     const auto placed = [&](const BodyFrames::Tip& tip) {
       return pose.frames[std::size_t(tip.frame)] * tip.X_FrameTip;
     };
-    pose.tip = placed(arm_->tip(tips_.empty() ? "" : tips_[std::size_t(q.back())]));
+    pose.tip = placed(arm_->tip(tips_.empty() ? "" : tips_[std::size_t(reader)]));
     for (const BodyFrames::Branch& branch : arm_->branches()) {
       Polyline line = {base_};
       for (const int k : branch.frames) line.push_back(pose.frames[std::size_t(k)].translation());
@@ -184,8 +214,10 @@ DrawnPose Drawing::at(std::span<const double> q) const {
     pose.frames = {Eigen::Isometry3d::Identity(), pose.tip};
     pose.lines = tip_->skeleton(q.first(tip_->coordinates().size()));
   }
-  for (const Eigen::Vector3d& target : targets_)
-    pose.targets.push_back(pose.frames.empty() ? std::nullopt : std::optional<Eigen::Vector3d>(pose.tip * target));
+  for (const auto& [instrument, target] : targets_) {
+    const bool drawn = instrument == reader && !pose.frames.empty();
+    pose.targets.push_back(drawn ? std::optional<Eigen::Vector3d>(pose.tip * target) : std::nullopt);
+  }
   return pose;
 }
 

@@ -71,6 +71,8 @@ double best_mean(std::vector<double> value, double cap) {
   const bool part = whole < value.size() && 1 - double(whole) * cap > 1e-12;
   const auto count = std::ptrdiff_t(whole + (part ? 1 : 0));
   std::nth_element(value.begin(), value.begin() + count - 1, value.end(), std::greater<>());
+  // In the order that each standard library leaves, the sum's last digits would be its own.
+  std::sort(value.begin(), value.begin() + count, std::greater<>());
   const double sum = std::accumulate(value.begin(), value.begin() + std::ptrdiff_t(whole), 0.0);
   if (!part) return sum / double(whole);
   return cap * sum + (1 - double(whole) * cap) * value[whole];

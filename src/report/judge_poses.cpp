@@ -49,7 +49,9 @@ class PoseJudge {
     JudgedPose judged{pose_of(model, q), reason(q), keyframe_at(drawing_, q), information(q), {}};
     judged.pose.sights = sights_of(*setup_.cell, q);
     judged.pose.nearest = nearest_at(*setup_.cell, q);
-    if (drawing_.camera()) judged.pixels = predicted_pixels(model, q);
+    for (const DrawnCamera& camera : drawing_.cameras())
+      if (camera.instrument == judged.drawn.instrument)
+        judged.pixels = predicted_pixels(model, camera.instrument, camera.points.size(), q);
     return judged;
   }
 

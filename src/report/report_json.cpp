@@ -63,6 +63,7 @@ Json keyframe_json(const ReportKeyframe& k) {
   json["tip"] = placement_json(k.tip);
   json["targets"] = Json::array();
   for (const auto& target : k.targets) json["targets"].push_back(target ? point_json(*target) : Json(nullptr));
+  if (!k.instrument.empty()) json["instrument"] = k.instrument;
   return json;
 }
 
@@ -110,14 +111,14 @@ Json pixels_json(const std::vector<Eigen::Vector2d>& pixels) {
 }
 
 Json camera_json(const ReportCamera& camera) {
-  Json json = {{"on_tip", camera.on_tip},
-               {"camera", placement_json(camera.X_CarrierCamera)},
-               {"board", placement_json(camera.X_CarrierBoard)},
+  Json json = {{"camera", {{"frame", camera.camera_frame}, {"placement", placement_json(camera.X_FrameCamera)}}},
+               {"board", {{"frame", camera.board_frame}, {"placement", placement_json(camera.X_FrameBoard)}}},
                {"size", {camera.width, camera.height}},
                {"corners", Json::array()},
                {"names", Json::array()},
                {"points", Json::array()},
                {"pictures", Json::array()}};
+  if (!camera.instrument.empty()) json["instrument"] = camera.instrument;
   for (const Eigen::Vector3d& corner : camera.corners) json["corners"].push_back(point_json(corner));
   for (const auto& [name, position] : camera.points) {
     json["names"].push_back(name);
@@ -146,12 +147,15 @@ void add_scene(Json& json, const Report& report) {
   json["frames"] = report.frames;
   json["bodies"] = bodies_json(report);
   json["stations"] = Json::array();
-  for (const auto& [name, X] : report.stations)
-    json["stations"].push_back({{"name", name}, {"placement", placement_json(X)}});
+  for (const ReportStation& station : report.stations) {
+    json["stations"].push_back({{"name", station.name}, {"placement", placement_json(station.X_MeasureStation)}});
+    if (!station.instrument.empty()) json["stations"].back()["instrument"] = station.instrument;
+  }
   json["targets"] = report.targets;
   json["keyframes"] = Json::array();
   for (const ReportKeyframe& keyframe : report.keyframes) json["keyframes"].push_back(keyframe_json(keyframe));
-  json["camera"] = report.camera ? camera_json(*report.camera) : Json(nullptr);
+  json["cameras"] = Json::array();
+  for (const ReportCamera& camera : report.cameras) json["cameras"].push_back(camera_json(camera));
 }
 
 Json plan_report(const Report& report) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <set>
 
@@ -239,10 +240,16 @@ class ReportBuilder {
 
   /// Predicted pixels of the board's points.
   void fill_pictures() {
-    if (!report_.camera) return;
-    for (std::size_t i = 0; i < list_.ids.size(); ++i)
-      if (auto pixels = predicted_pixels(*study_.first().model, list_.configurations[i]); !pixels.empty())
-        report_.camera->pictures.emplace_back(list_.ids[i], std::move(pixels));
+    std::map<int, std::string> reads;
+    for (const ReportKeyframe& keyframe : report_.keyframes)
+      if (keyframe.pose) reads[*keyframe.pose] = keyframe.instrument;
+    for (ReportCamera& camera : report_.cameras)
+      for (std::size_t i = 0; i < list_.ids.size(); ++i) {
+        if (reads[list_.ids[i]] != camera.instrument) continue;
+        auto pixels =
+            predicted_pixels(*study_.first().model, camera.instrument, camera.points.size(), list_.configurations[i]);
+        if (!pixels.empty()) camera.pictures.emplace_back(list_.ids[i], std::move(pixels));
+      }
   }
 
   /// The candidates and what the plan has beside them.

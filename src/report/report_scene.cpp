@@ -153,23 +153,43 @@ class MotionRecorder {
   double seconds_ = 0.0, coarse_ = 1.0;
 };
 
-void fill_camera(Report& report, const DrawnCamera& camera) {
-  report.camera = ReportCamera{camera.on_tip,       camera.X_CarrierCamera, camera.X_CarrierBoard, camera.image.width,
-                               camera.image.height, camera.image.corners,   camera.points,         {}};
+ReportCamera camera_of(const DrawnCamera& drawn) {
+  return {drawn.instrument,
+          drawn.camera.frame,
+          drawn.board.frame,
+          drawn.camera.X_FrameThing,
+          drawn.board.X_FrameThing,
+          drawn.image.width,
+          drawn.image.height,
+          drawn.image.corners,
+          drawn.points,
+          {}};
 }
 
 }  // namespace
 
 ReportKeyframe keyframe_at(const Drawing& drawing, std::span<const double> q) {
   DrawnPose drawn = drawing.at(q);
-  return {std::nullopt, 0.0, std::move(drawn.frames), std::move(drawn.lines), drawn.tip, std::move(drawn.targets)};
+  return {std::nullopt,
+          0.0,
+          std::move(drawn.frames),
+          std::move(drawn.lines),
+          drawn.tip,
+          std::move(drawn.targets),
+          std::move(drawn.instrument)};
 }
 
-std::vector<Eigen::Vector2d> predicted_pixels(const IdentificationModel& model, std::span<const double> q) {
+std::vector<Eigen::Vector2d> predicted_pixels(const IdentificationModel& model, const std::string& instrument,
+                                              std::size_t count, std::span<const double> q) {
   Eigen::VectorXd pixels;
   std::vector<Eigen::Vector2d> points;
   if (!model.predict(q, {}, pixels)) return points;
-  for (Eigen::Index k = 0; k + 1 < pixels.size(); k += 2) points.emplace_back(pixels[k], pixels[k + 1]);
+  // Readings of a list are those of all instruments, one after the other.
+  const auto first = std::ranges::find_if(model.readings(), [&](const Reading& reading) {
+    return instrument.empty() || reading.name.starts_with(instrument + ".");
+  });
+  const auto at = Eigen::Index(first - model.readings().begin());
+  for (Eigen::Index k = at; k < at + 2 * Eigen::Index(count); k += 2) points.emplace_back(pixels[k], pixels[k + 1]);
   return points;
 }
 
@@ -180,14 +200,15 @@ void fill_scene(Report& report, const Drawing& drawing, const std::vector<std::p
   report.frames = drawing.frames();
   report.cell_frame = drawing.cell().frame;
   report.X_FrameCell = drawing.cell().X_FrameRoot;
-  report.stations = drawing.stations();
+  for (const DrawnStation& s : drawing.stations())
+    report.stations.push_back({s.instrument, s.name, s.X_MeasureStation});
   report.targets = drawing.targets();
   for (const DrawnBody& drawn : drawing.bodies()) {
     ReportBody body{drawn.name, drawn.kind, drawn.colour, drawn.frame, drawn.X_FrameBody};
     std::visit(Fill{body, drawn.mesh}, drawn.shape);
     report.bodies.push_back(std::move(body));
   }
-  if (drawing.camera()) fill_camera(report, *drawing.camera());
+  for (const DrawnCamera& camera : drawing.cameras()) report.cameras.push_back(camera_of(camera));
   MotionRecorder film(report, drawing, coordinates);
   if (report.route_json.empty()) {
     for (const auto& [id, q] : poses) film.show(id, q);

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -81,6 +82,55 @@ TEST(DrawProblem, TellsWhereTheCellStands) {
   ASSERT_GE(places.size(), 11u);
   for (const auto& [by_cell, drawn] : places) EXPECT_LT((by_cell - drawn).norm(), 1e-9);
   EXPECT_GT((places.front().second - places.back().second).norm(), 0.01) << "the base moves";
+}
+
+/// Whether a pinhole sees all points of the board of `camera` at a keyframe, and how near to its picture's rim, px.
+double least_distance_to_rim(const ReportCamera& camera, const ReportKeyframe& at, double focal) {
+  const Eigen::Isometry3d X_CameraBoard =
+      (at.frames[std::size_t(camera.camera_frame)] * camera.X_FrameCamera).inverse() *
+      at.frames[std::size_t(camera.board_frame)] * camera.X_FrameBoard;
+  double least = camera.width;
+  for (const auto& [name, position] : camera.points) {
+    const Eigen::Vector3d p = X_CameraBoard * position;
+    if (p.z() <= 0) return -camera.width;
+    const double u = focal * p.x() / p.z() + camera.width / 2, v = focal * p.y() / p.z() + camera.height / 2;
+    least = std::min({least, u, camera.width - u, v, camera.height - v});
+  }
+  return least;
+}
+
+TEST(DrawProblem, DrawsOfSeveralInstrumentsThatWhichReads) {
+  DrawOptions options;
+  options.evenly = 80;
+  options.feasible = 30;
+  options.ways = false;
+  const ProblemReport report =
+      draw_problem(read_problem(examples_folder() / "humanoid/both_hands.yaml"), options, Monitor{});
+  const Report& scene = report.scene;
+  ASSERT_EQ(scene.cameras.size(), 2u);
+  ASSERT_EQ(scene.stations.size(), 1u);
+  EXPECT_EQ(scene.stations[0].instrument, "tracker");
+  EXPECT_LT((scene.stations[0].X_MeasureStation.translation() - Eigen::Vector3d(3, 0, 1.2)).norm(), 1e-12);
+  EXPECT_THAT(scene.targets, ElementsAre("tracker.P1", "tracker.P2", "tracker.P3"));
+  std::map<std::string, std::set<bool>> seen;
+  for (std::size_t k = 0; k < scene.keyframes.size(); ++k) {
+    const ReportKeyframe& at = scene.keyframes[k];
+    ASSERT_EQ(at.targets.size(), 3u);
+    for (std::size_t t = 0; t < 3; ++t) EXPECT_EQ(at.targets[t].has_value(), at.instrument == "tracker");
+    if (at.instrument == "tracker") {
+      EXPECT_LT((*at.targets[2] - at.tip * Eigen::Vector3d(0.03, 0, -0.16)).norm(), 1e-12);
+      continue;
+    }
+    const ReportCamera& camera = scene.cameras[at.instrument == "left_board" ? 0 : 1];
+    EXPECT_EQ(camera.instrument, at.instrument);
+    const std::string why = verdict(report, k);
+    const double rim = least_distance_to_rim(camera, at, 920);
+    if (why.empty()) EXPECT_GE(rim, 0) << "drawn as it is judged";
+    if (why.starts_with("board not in the image")) EXPECT_LT(rim, 0);
+    seen[at.instrument].insert(rim >= 0);
+  }
+  EXPECT_EQ(seen["left_board"].size(), 2u);
+  EXPECT_EQ(seen["right_board"].size(), 2u);
 }
 
 TEST(DrawProblem, HasOneVerdictAKeyframeThatItsTipShows) {

@@ -76,8 +76,9 @@ const page = await context.newPage();
 page.setDefaultTimeout(240_000);
 const complaints = [];
 // A screenshot puts a style of its own into the page.
-page.on('console', (m) => m.type() === 'error' && !(values.screenshots && m.text().startsWith('Content-Security-Policy')) && complaints.push(m.text()));
-page.on('pageerror', (error) => complaints.push(String(error)));
+const complain = (text) => !(values.screenshots && text.startsWith('Content-Security-Policy')) && complaints.push(text);
+page.on('console', (m) => m.type() === 'error' && complain(m.text()));
+page.on('pageerror', (error) => complain(error.message ?? String(error)));
 await page.goto(`file://${file}`);
 about(`from an empty page to a KRL program in Firefox ${browser.version()}`);
 const start = performance.now();

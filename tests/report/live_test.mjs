@@ -33,10 +33,11 @@ execFileSync('node', [join(root, 'report/build_live.mjs'), resolve(values.wasm),
 function nativeFiles() {
   const run = (...words) => execFileSync(resolve(values.program), words, { cwd: out, encoding: 'utf8' });
   copyFileSync(join(root, 'examples/kr270/kr270.urdf'), join(out, 'kr270.urdf'));
-  run('init', 'kr270.urdf', '--tracker', '--yes', '--poses', '16', '--force', '-o', 'problem.yaml');
+  run('init', 'kr270.urdf', '--tracker', '--yes', '--poses', '16', '--force', '-o', 'my arm.yaml');
   const small = ['--candidates', '300', '--restarts', '1', '--proof-time', '0', '--force', '--quiet'];
-  run('plan', 'problem.yaml', ...small);
-  run('simulate', 'problem.yaml', 'plan.json', '--draws', '2', '--data', 'measured.csv', '--force', '--quiet');
+  run('plan', 'my arm.yaml', ...small);
+  run('simulate', 'my arm.yaml', 'plan.json', '--draws', '2', '--data', 'measured.csv', '--force', '--quiet');
+  run('export', 'plan.json', '--to', 'kuka-krl', '-o', 'CALPOSES.src', '--force', '--quiet');
 }
 
 const drawings = (page) => page.locator('.live-view').evaluate((e) => Number(e.dataset.drawn ?? 0));
@@ -97,6 +98,7 @@ async function checkCell(page) {
 /** A drag in the picture changes the text. */
 async function checkDrag(page) {
   await step(page, /Instrument/);
+  check(!(await page.getByRole('combobox', { name: 'Camera' }).isVisible()), 'a tracker asks for no camera');
   const before = await text(page);
   await page.getByRole('button', { name: 'Top' }).click();
   await page.waitForTimeout(500);
@@ -116,8 +118,8 @@ async function checkDrag(page) {
 async function checkMovingBase(page) {
   about('a base that moves');
   await step(page, /Robot/);
-  const given = (name, from = name) => ({ name, mimeType: 'text/plain', buffer: readFileSync(join(root, 'examples/two_arms', from)) });
-  const files = [given('problem.yaml', 'left_sees_right.yaml'), given('two_arms.urdf')];
+  const given = (name) => ({ name, mimeType: 'text/plain', buffer: readFileSync(join(root, 'examples/two_arms', name)) });
+  const files = [given('left_sees_right.yaml'), given('two_arms.urdf')];
   await redrawn(page, () => page.locator('#step-0 input[type=file]').first().setInputFiles(files));
   await step(page, /Cell/);
   await redrawn(page, () => page.getByRole('button', { name: 'Add a box' }).click());
@@ -234,6 +236,11 @@ async function checkStop(page) {
   await page.close({ runBeforeUnload: true });
   for (let k = 0; k < 50 && asked === 0; k++) await new Promise((resolve) => setTimeout(resolve, 100));
   check(asked === 1, 'a page that plans asks before it is left', asked);
+  const other = await page.context().newPage();
+  await other.goto(page.url());
+  await other.waitForFunction(() => document.querySelector('.yaml')?.value.length > 0);
+  check((await text(other)) === (await text(page)), 'and its problem is there in another tab, should this one be lost');
+  await other.close();
   await stop.click();
 }
 
@@ -242,20 +249,26 @@ async function checkMeasured(page) {
   about('measured data');
   nativeFiles();
   await step(page, /Robot/);
-  await redrawn(page, () => page.locator('#step-0 input[type=file]').first().setInputFiles([join(out, 'problem.yaml'), join(out, 'kr270.urdf')]));
+  await redrawn(page, () => page.locator('#step-0 input[type=file]').first().setInputFiles([join(out, 'my arm.yaml'), join(out, 'kr270.urdf')]));
+  check((await page.locator('#step-0 [role=status]').innerText()) === 'my arm.yaml is read.', 'a problem of any name is read');
   await page.evaluate(() => document.querySelector('#result iframe')?.remove());
   await step(page, /Measured/);
   await page.locator('#step-5 input[type=file]').first().setInputFiles(join(out, 'measured.csv'));
   await page.locator('#result iframe').waitFor();
-  const native = JSON.parse(
-    execFileSync(resolve(values.program), ['calibrate', 'problem.yaml', 'measured.csv', '--json', '--quiet', '-o', '-'], { cwd: out, encoding: 'utf8', stdio: ['ignore', 'pipe', 'ignore'] }),
-  );
+  const native = (...words) => execFileSync(resolve(values.program), words, { cwd: out, encoding: 'utf8', stdio: ['ignore', 'pipe', 'ignore'] });
+  const calibrated = JSON.parse(native('calibrate', 'my arm.yaml', 'measured.csv', '--json', '--quiet', '--force', '-o', 'calibrated.yaml'));
+  const report = page.frameLocator('#result iframe');
+  const shown = JSON.parse(await report.locator('#report-data').textContent()).result;
+  check(shown.poses.length === 16 && shown.poses[0].residuals.length === calibrated.poses[0].residuals.length, 'the report has residuals of all poses');
+  shown.poses.forEach((p, k) => p.residuals.forEach((v, i) => check(Math.abs(v - calibrated.poses[k].residuals[i]) < 1e-9, `residual ${i} of pose ${p.id}`, v)));
+  check(JSON.stringify(shown.verdict) === JSON.stringify(calibrated.verdict), 'and the verdict of the native program', JSON.stringify(shown.verdict));
   await step(page, /Take away/);
   const own = (await download(page, () => page.getByRole('button', { name: 'calibrated.yaml' }).click())).text;
   const value = (p) => Number(own.match(new RegExp(`${p.name.replace(/\./g, '\\.')}["']?:\\s*\\{[^}]*?value: ([-+.e\\d]+)`))?.[1] ?? NaN);
-  const some = native.parameters.filter((p) => Number.isFinite(value(p)));
+  const some = calibrated.parameters.filter((p) => Number.isFinite(value(p)));
   check(some.length > 2, 'calibrated.yaml has the parameters', some.length);
   for (const p of some.slice(0, 3)) near(value(p), p.value, 1e-6, `${p.name} is as the native program has it`);
+  check((await download(page, () => page.getByRole('button', { name: 'my arm.yaml' }).click())).name === 'my arm.yaml', 'the problem is saved under its own name');
   await shot(page, 'measured');
   await step(page, /Measured/);
   const urdf = await download(page, () => page.getByRole('button', { name: 'Corrected URDF' }).click());
@@ -263,9 +276,64 @@ async function checkMeasured(page) {
   await page.getByRole('button', { name: 'Next poses' }).click();
   await page.waitForFunction(() => document.querySelector('#result-title').textContent === 'Next poses');
   await shot(page, 'next');
-  const compensated = await download(page, () => page.locator('#step-5 input[type=file]').nth(1).setInputFiles(join(out, 'poses.csv')));
+  native('next', 'my arm.yaml', '--data', 'measured.csv', '--poses', '5', '--state', '-', '-o', 'next.csv', '--force', '--quiet');
+  native('compensate', 'calibrated.yaml', 'poses.csv', '-o', 'compensated.csv', '--force', '--quiet');
+  native('compensate', 'calibrated.yaml', 'CALPOSES.src', 'CALPOSES.dat', '-o', 'compensated', '--force', '--quiet');
+  const numbers = (list) => (list.match(/-?\d+\.\d+/g) ?? []).map(Number);
+  const alike = (one, path, what) => {
+    const [a, b] = [numbers(one), numbers(readFileSync(join(out, path), 'utf8'))];
+    check(a.length > 20 && a.length === b.length && a.every((v, k) => Math.abs(v - b[k]) < 2e-4), what, `${a.length} numbers, ${b.length}`);
+  };
+  await step(page, /Take away/);
+  alike((await download(page, () => page.getByRole('button', { name: 'next.csv' }).click())).text, 'next.csv', 'the next poses are those of the native program');
+  await step(page, /Measured/);
+  const give = (...names) => page.locator('#step-5 input[type=file]').nth(1).setInputFiles(names.map((name) => join(out, name)));
+  const compensated = await download(page, () => give('poses.csv'));
   check(compensated.name === 'corrected-poses.csv', 'poses come back compensated', compensated.name);
   check(compensated.text !== readFileSync(join(out, 'poses.csv'), 'utf8'), 'and are other ones');
+  alike(compensated.text, 'compensated.csv', 'those of the native program');
+  const krl = new Map();
+  const keep = async (d) => krl.set(d.suggestedFilename(), readFileSync(await d.path(), 'utf8'));
+  page.on('download', keep);
+  await give('CALPOSES.src', 'CALPOSES.dat');
+  for (let k = 0; k < 300 && krl.size < 2; k++) await page.waitForTimeout(100);
+  page.off('download', keep);
+  check(krl.has('CALPOSES.dat'), 'so does a program of the robot', [...krl.keys()]);
+  for (const [name, own] of krl) if (name === 'CALPOSES.dat') alike(own, `compensated/${name}`, `${name} is that of the native program`);
+
+  await step(page, /Instrument/);
+  const before = await text(page);
+  await redrawn(page, () => page.getByRole('button', { name: 'Write the problem anew' }).click());
+  check((await text(page)) !== before && (await page.evaluate(() => document.querySelector('.yaml').value)).includes('laser tracker'), 'a problem written anew');
+  await step(page, /Take away/);
+  check((await page.getByRole('button', { name: 'my arm.yaml' }).count()) === 1, 'keeps its name');
+  await redrawn(page, () => page.getByRole('button', { name: 'Undo' }).click());
+  check((await text(page)) === before, 'and can be undone');
+}
+
+/** A thousand poses of a UR5 before a laser tracker: the residuals are those of the native program. */
+async function checkRealData(page) {
+  about('real data');
+  const data = join(root, '../shared/data/ur5_gts3800');
+  if (!existsSync(data)) return console.log('Left out: real data (../shared is missing)');
+  const folder = join(out, 'real');
+  const example = join(root, 'examples/real_data/ur5_gts3800');
+  mkdirSync(folder, { recursive: true });
+  execFileSync('/usr/bin/python3', [join(example, 'convert.py'), data, folder]);
+  await step(page, /Robot/);
+  await redrawn(page, () => page.locator('#step-0 input[type=file]').first().setInputFiles(['problem.yaml', 'ur5.urdf'].map((name) => join(example, name))));
+  await page.evaluate(() => document.querySelector('#result iframe')?.remove());
+  await step(page, /Measured/);
+  const start = performance.now();
+  await page.locator('#step-5 input[type=file]').first().setInputFiles(join(folder, 'grid.csv'));
+  await page.locator('#result iframe').waitFor();
+  console.log(`1,000 poses are calibrated and drawn after ${((performance.now() - start) / 1000).toFixed(1)} s`);
+  const shown = JSON.parse(await page.frameLocator('#result iframe').locator('#report-data').textContent()).result;
+  const words = ['calibrate', join(example, 'problem.yaml'), 'grid.csv', '--json', '--quiet', '--force', '-o', 'calibrated.yaml'];
+  const native = JSON.parse(execFileSync(resolve(values.program), words, { cwd: folder, encoding: 'utf8', stdio: ['ignore', 'pipe', 'ignore'], maxBuffer: 1e8 }));
+  check(shown.verdict === native.verdict && shown.poses.length === 1000, 'verdict and poses are those of the native program', `${shown.verdict}, ${shown.poses.length} poses`);
+  const apart = Math.max(...shown.poses.flatMap((p, k) => p.residuals.map((v, i) => Math.abs(v - native.poses[k].residuals[i]))));
+  check(apart < 1e-9, 'so are the residuals', apart);
 }
 
 /** More candidates than 4 GB hold are refused before they are drawn, and nothing is lost. */
@@ -381,6 +449,7 @@ await checkPlan(page);
 await checkMove(page);
 await checkStop(page);
 await checkMeasured(page);
+await checkRealData(page);
 await checkMemory(page);
 await checkMovingBase(page);
 await checkBadInput(page);
@@ -394,6 +463,10 @@ for (const width of [1400, 420]) {
     check(wider <= 0, `nothing is wider than the page at ${width} px, ${name}`, wider);
   }
 }
+await page.getByRole('button', { name: 'Licences' }).click();
+const licences = await page.locator('dialog pre').innerText();
+for (const name of ['BSD 3-Clause', 'eigen3', 'nlopt', 'GNU LESSER', 'ompl', 'musl', 'three', 'uplot', 'yaml']) check(licences.toLowerCase().includes(name.toLowerCase()), `the licence of ${name} is shown`);
+await page.getByRole('button', { name: 'Close' }).click();
 const kept = await text(page);
 await page.waitForTimeout(1000);
 await page.reload();

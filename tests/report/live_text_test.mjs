@@ -10,7 +10,7 @@ if (!existsSync(new URL('../../report/node_modules/yaml', import.meta.url))) {
 const { metres, withEntry, withoutEntry, withValue, written } = await import('../../report/src/live/yaml_edit.js');
 const { added, moved, removed, resized, thingsOf } = await import('../../report/src/live/things.js');
 const { messagesOf, progressOf } = await import('../../report/src/live/messages.js');
-const { placeMeshes, robotAmong } = await import('../../report/src/live/robot_files.js');
+const { placeMeshes, planAmong, problemsAmong, robotAmong } = await import('../../report/src/live/robot_files.js');
 
 const cell = readFileSync(new URL('../../examples/cell/problem.yaml', import.meta.url), 'utf8');
 const thing = (text, label) => thingsOf(text).find((t) => t.label === label);
@@ -52,6 +52,7 @@ assert.deepEqual(fault, { text: 'no; allowed: yes', line: 23, kind: 'error' });
 assert.deepEqual(note, { text: 'slow', line: 0, kind: 'note' });
 assert.equal(progressOf('candidates 10/100').share, 0.1);
 assert.equal(messagesOf(['posewright: robot.urdf:3: no'], 'problem.yaml')[0].line, 0);
+assert.equal(messagesOf(['posewright: my cell.yaml:4: no'], 'a/my cell.yaml')[0].line, 4);
 
 // Loose meshes go where the URDF names them.
 const bytes = (text) => new TextEncoder().encode(text);
@@ -59,4 +60,17 @@ const files = new Map([['r.urdf', bytes('<robot name="r"><mesh filename="package
 assert.equal(robotAmong(files), 'r.urdf');
 assert.deepEqual(placeMeshes(files, 'r.urdf'), ['b.stl']);
 assert.ok(files.has('p/m/a.stl'));
+
+// Problems and plans are known by what is in them; of several problems that of the usual name comes first.
+const dropped = new Map([['x/joint_limits.yaml', bytes('joint_limits: {}\n')], ['x/cell.yml', bytes('# mine\nposewright: 1\n')], ['x/calibrated.yaml', bytes('posewright_parameters: 1\n')], ['x/problem.yaml', bytes('posewrigt: 1\n')]]);
+assert.deepEqual(problemsAmong(dropped), ['x/problem.yaml', 'x/cell.yml']);
+assert.equal(planAmong(new Map([['a.json', bytes('{}')], ['left.json', bytes('{\n "schema": "posewright/plan/1",\n')]])), 'left.json');
+assert.equal(planAmong(files), undefined);
+
+// Of several instruments those that stand still are moved, each in its own entry of the list.
+const both = readFileSync(new URL('../../examples/instruments/tracker_and_camera.yaml', import.meta.url), 'utf8');
+assert.deepEqual(changed(both, moved(both, thing(both, 'tracker, station T'), [4.5, 0, 1])), ['      stations: {T: [4.5, 0, 1]}']);
+assert.equal(changed(both, moved(both, thing(both, 'camera, Board'), [2, 0, 1])).length, 1);
+const hands = readFileSync(new URL('../../examples/humanoid/both_hands.yaml', import.meta.url), 'utf8');
+assert.deepEqual(thingsOf(hands).filter((t) => t.step === 'instrument').map((t) => t.label), ['tracker, station T']);
 console.log('Edits keep the text, messages have their lines.');

@@ -54,9 +54,14 @@ export async function checkLocks(page, { plan, folder, problem }, program) {
 
 /** @param {any} page @param {import('./make_reports.mjs').Case} c */
 export async function checkCamera(page, { data, plan }) {
-  const { camera } = data;
-  check(camera.pictures.length === plan.poses.length, 'every pose has a picture');
-  for (const id of [plan.poses[0].id, plan.poses.at(-1).id]) {
+  const [camera] = data.cameras;
+  const own = plan.poses.filter((p) => p.instrument === camera.instrument);
+  check(camera.pictures.length === own.length, 'every pose that a camera reads has a picture');
+  for (const { id } of plan.poses.filter((p) => p.instrument !== camera.instrument).slice(0, 1)) {
+    await page.locator(`.rows li[data-id="${id}"] .preview`).click();
+    check(!(await page.locator('.camera-picture').isVisible()), 'other poses have none');
+  }
+  for (const id of [own[0].id, own.at(-1).id]) {
     await page.locator(`.rows li[data-id="${id}"] .preview`).click();
     const drawn = await page
       .locator('svg.camera circle')

@@ -203,10 +203,11 @@ TEST(ReportCamera, PointsOfTheBoardAreWhereAPinholeSeesThem) {
   const TemporaryFolder folder;
   const Problem problem = read_problem(examples_folder() / "instruments" / "camera_on_hand.yaml");
   const MadeMoves made = make(problem, 10, 60, folder);
-  const json& camera = made.report["camera"];
+  ASSERT_EQ(made.report["cameras"].size(), 1U);
+  const json& camera = made.report["cameras"][0];
   const auto& spec = std::get<CameraMeasurement>(problem.measurement.instrument);
   ASSERT_EQ(camera["pictures"].size(), 10U);
-  EXPECT_EQ(camera["on_tip"], true);
+  EXPECT_EQ(camera["board"]["frame"], 0) << "the board stands still";
   const auto placed = [](const json& x) {
     Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
     X.translation() = Eigen::Vector3d(x[0], x[1], x[2]);
@@ -214,8 +215,10 @@ TEST(ReportCamera, PointsOfTheBoardAreWhereAPinholeSeesThem) {
     return X;
   };
   for (std::size_t i = 0; i < 10; ++i) {
+    // The camera's place is in the tip's frame, which is that of the last joint.
     const Eigen::Isometry3d X_CameraBoard =
-        (*made.plan.poses[i].tool_pose * placed(camera["camera"])).inverse() * placed(camera["board"]);
+        (*made.plan.poses[i].tool_pose * placed(camera["camera"]["placement"])).inverse() *
+        placed(camera["board"]["placement"]);
     const json& pixels = camera["pictures"][i]["pixels"];
     ASSERT_EQ(pixels.size(), std::size_t(spec.rows * spec.columns));
     for (std::size_t k = 0; k < pixels.size(); ++k) {

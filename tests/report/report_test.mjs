@@ -43,7 +43,7 @@ async function checkCase(browser, c) {
   await checkPlots(page, c);
   await checkList(page, c, values.program);
   await checkLocks(page, c, values.program);
-  if (c.data.camera) await checkCamera(page, c);
+  if (c.data.cameras.length > 0) await checkCamera(page, c);
   await checkReading(page, c);
   if (!c.route) await checkRepeat(page, c, values.program);
   check(complaints.length === 0, 'no error, no warning, no request', complaints.join(' | '));

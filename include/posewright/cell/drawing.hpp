@@ -33,15 +33,28 @@ struct DrawnPose {
   std::vector<Eigen::Isometry3d> frames;
   std::vector<Polyline> lines;  ///< arm from base to tip, from the root to each of several, or legs and rims
   Eigen::Isometry3d tip = Eigen::Isometry3d::Identity();
-  std::vector<std::optional<Eigen::Vector3d>> targets;
+  std::vector<std::optional<Eigen::Vector3d>> targets;  ///< none: of an instrument that does not read here
+  std::string instrument;                               ///< that reads; empty: there is one
 };
 
-/// A camera and the points that it looks at; one of the two rides on the tip, the other is in the measurement frame.
+/// Something of an instrument in the frame that carries it.
+struct Carried {
+  int frame = 0;  ///< index into Drawing::frames()
+  Eigen::Isometry3d X_FrameThing = Eigen::Isometry3d::Identity();
+};
+
+/// An instrument that stands still.
+struct DrawnStation {
+  std::string instrument;  ///< empty: there is one
+  std::string name;
+  Eigen::Isometry3d X_MeasureStation = Eigen::Isometry3d::Identity();
+};
+
+/// A camera and the points that it looks at.
 struct DrawnCamera {
-  bool on_tip = false;  ///< the camera does, else the board
-  Eigen::Isometry3d X_CarrierCamera = Eigen::Isometry3d::Identity();
+  std::string instrument;  ///< empty: there is one
+  Carried camera, board;
   InstrumentView::Image image;
-  Eigen::Isometry3d X_CarrierBoard = Eigen::Isometry3d::Identity();
   std::vector<std::pair<std::string, Eigen::Vector3d>> points;  ///< board frame, m
 };
 
@@ -60,11 +73,11 @@ class Drawing {
   /// Where the positions of obstacles in the file are.
   const RootPlace& cell() const { return cell_; }
   const std::vector<DrawnBody>& bodies() const { return bodies_; }
+  /// Of all instruments; in a list P1 of the tracker is "tracker.P1".
   const std::vector<std::string>& targets() const { return target_names_; }
-  /// Instruments that stand still.
-  const std::vector<std::pair<std::string, Eigen::Isometry3d>>& stations() const { return stations_; }
-  /// For an instrument that takes pictures; none for others.
-  const std::optional<DrawnCamera>& camera() const { return camera_; }
+  const std::vector<DrawnStation>& stations() const { return stations_; }
+  /// One for each instrument that takes pictures.
+  const std::vector<DrawnCamera>& cameras() const { return cameras_; }
   /// As its URDF calls it; empty: it has none.
   const std::string& robot() const { return robot_; }
   /// Why there are no bodies, where some were expected; empty: nothing is missing.
@@ -76,19 +89,23 @@ class Drawing {
  private:
   void add_bodies(const Problem& problem);
   void keep_to_budget();
-  void add_instrument(const MeasurementSpec& measurement, const Cell& cell);
+  void add_instrument(const MeasurementSpec& measurement, int index);
+  void add_camera(const MeasurementSpec& measurement, const InstrumentView& view);
+  Carried carried(const MeasurementSpec& measurement, bool on_tip, const std::string& parameters,
+                  const Placement& placement) const;
 
   std::shared_ptr<const IdentificationModel> model_;
   std::unique_ptr<BodyFrames> arm_;  // of a serial arm
   std::unique_ptr<TipModel> tip_;    // of a parallel robot
   Eigen::Vector3d base_ = Eigen::Vector3d::Zero();
   RootPlace cell_;
-  std::vector<std::string> tips_;  // per instrument, if they see several: the one that it sees
+  std::vector<std::string> instruments_;  // of a list
+  std::vector<std::string> tips_;         // per instrument, if they see several: the one that it sees
   std::vector<std::string> frame_names_, target_names_;
-  std::vector<Eigen::Vector3d> targets_;  // tip frame
-  std::vector<std::pair<std::string, Eigen::Isometry3d>> stations_;
+  std::vector<std::pair<int, Eigen::Vector3d>> targets_;  // index of the instrument; tip frame
+  std::vector<DrawnStation> stations_;
   std::vector<DrawnBody> bodies_;
-  std::optional<DrawnCamera> camera_;
+  std::vector<DrawnCamera> cameras_;
   std::string robot_, warning_;
 };
 

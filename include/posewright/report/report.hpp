@@ -32,7 +32,8 @@ struct ReportKeyframe {
   std::vector<Eigen::Isometry3d> frames{};
   std::vector<std::vector<Eigen::Vector3d>> lines{};
   Eigen::Isometry3d tip = Eigen::Isometry3d::Identity();
-  std::vector<std::optional<Eigen::Vector3d>> targets{};
+  std::vector<std::optional<Eigen::Vector3d>> targets{};  ///< none: not drawn here
+  std::string instrument{};                               ///< of a list: that reads
 };
 
 /// Data for figures of any subset of the poses: information matrices m × m in units of tolerance, nuisance columns
@@ -52,11 +53,18 @@ struct ReportCandidates {
   std::vector<int> chosen;                 ///< those that are poses of the plan
 };
 
+/// An instrument that stands still.
+struct ReportStation {
+  std::string instrument;  ///< of a list
+  std::string name;
+  Eigen::Isometry3d X_MeasureStation = Eigen::Isometry3d::Identity();
+};
+
 /// A camera, its board and where the camera will see the board's points.
 struct ReportCamera {
-  bool on_tip =
-      false;  ///< the camera rides on the tip and the board stands in the measurement frame, else the other way
-  Eigen::Isometry3d X_CarrierCamera = Eigen::Isometry3d::Identity(), X_CarrierBoard = Eigen::Isometry3d::Identity();
+  std::string instrument;                 ///< of a list
+  int camera_frame = 0, board_frame = 0;  ///< index into Report::frames: what carries it
+  Eigen::Isometry3d X_FrameCamera = Eigen::Isometry3d::Identity(), X_FrameBoard = Eigen::Isometry3d::Identity();
   double width = 0, height = 0;                                 ///< px
   std::vector<Eigen::Vector3d> corners;                         ///< lines of sight of the picture's corners, z = 1
   std::vector<std::pair<std::string, Eigen::Vector3d>> points;  ///< board frame, m
@@ -73,13 +81,13 @@ struct Report {
   int cell_frame = 0;                 ///< index into frames: carries the cell, in which obstacles have their positions
   Eigen::Isometry3d X_FrameCell = Eigen::Isometry3d::Identity();
   std::vector<ReportBody> bodies;
-  std::vector<std::pair<std::string, Eigen::Isometry3d>> stations;
+  std::vector<ReportStation> stations;
   std::vector<std::string> targets;
   std::vector<std::pair<std::string, std::string>> actuators;  ///< of a parallel robot: name and unit of each
   std::vector<ReportKeyframe> keyframes;                       ///< in measuring order
   ReportInformation information;
   std::optional<ReportCandidates> candidates;
-  std::optional<ReportCamera> camera;
+  std::vector<ReportCamera> cameras;
   std::vector<double> position_errors;  ///< predicted, at feasible configurations spread like the candidates, m
   std::vector<CurvePoint> curve;        ///< other numbers of poses; worst_sigma is σ / tolerance
   std::vector<std::optional<CurvePoint>> prefix;  ///< after each pose in measuring order; none: not identifiable yet

@@ -80,7 +80,7 @@ export class Handles {
     const { bodies, sights, picture } = this.scene;
     const own = thing.station && !thing.entry;
     const names = bodies.parts.filter(({ body }) => body.kind === 'obstacle' && (thing.entry ? body.name === thing.body : false));
-    const cone = own ? sights.stations[picture.report.stations.findIndex((s) => s.name === thing.station)] : undefined;
+    const cone = own ? sights.stations[picture.report.stations.findIndex((s) => s.name === thing.station && (s.instrument ?? '') === thing.instrument)] : undefined;
     return [...names.map((p) => p.mesh), cone].filter(Boolean).map((object) => ({ object, from: object.position.clone() }));
   }
 

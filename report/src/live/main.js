@@ -1,6 +1,7 @@
 import { h } from '../dom.js';
 import { watchTheme } from '../theme.js';
 import { editor } from './editor.js';
+import { licences } from './licences.js';
 import { liveView } from './live_view.js';
 import { messagesOf } from './messages.js';
 import { Program } from './program.js';
@@ -69,17 +70,20 @@ const live = {
       live.complain('There is no robot yet: drop a URDF or choose an example.');
       return false;
     }
-    const args = ['init', robot, ...live.instrumentWords(), '--yes', '-o', 'problem.yaml', '--force'];
-    const { code, err, files: written } = await live.work.run({ args, files });
+    // A problem of the same robot keeps its name and what can be undone.
+    const again = live.robotOf() === robot;
+    const problem = again ? live.project.problem : 'problem.yaml';
+    const args = ['init', robot, ...live.instrumentWords(), '--yes', '-o', problem, '--force'];
+    const { code, err, files: written } = await live.work.run({ args, files: new Map([...files].filter(([path]) => path !== problem)) });
     const messages = messagesOf(err, robot);
-    if (code !== 0 || !written.has('problem.yaml')) {
+    if (code !== 0 || !written.has(problem)) {
       live.complain(messages.map((m) => (m.line > 0 ? `${nameOf(robot)}, line ${m.line}: ${m.text}` : m.text)).join(' '));
       return false;
     }
-    if (live.project.problem === 'problem.yaml' && live.robotOf() === robot) {
-      live.project.add([...files, ...[...written].filter(([path]) => path !== 'problem.yaml')]);
-      live.project.write(new TextDecoder().decode(written.get('problem.yaml')));
-    } else live.project.open(new Map([...files, ...written]), 'problem.yaml');
+    if (again) {
+      live.project.add([...files, ...written].filter(([path]) => path !== problem));
+      live.project.write(new TextDecoder().decode(written.get(problem)));
+    } else live.project.open(new Map([...files, ...written]), problem);
     live.complain(messages.map((m) => m.text).join(' '));
     return true;
   },
@@ -107,6 +111,7 @@ function build() {
 
 watchTheme();
 build();
+licences();
 addEventListener('beforeunload', (event) => live.planning && event.preventDefault());
 for (const name of ['dragover', 'drop']) addEventListener(name, (event) => event.preventDefault());
 const given = document.getElementById('given').textContent;

@@ -10,7 +10,7 @@ export function messageOf(text, problem) {
   const plain = text.replace(/^posewright: /, '');
   const note = /^(note|warning): /.exec(plain);
   const body = note ? plain.slice(note[0].length) : plain;
-  const place = body.match(/^([^\s:]+):(\d+): /);
+  const place = body.match(/^([^:]+):(\d+): /);
   const own = place && nameOf(place[1]) === nameOf(problem);
   return { text: own ? body.slice(place[0].length) : body, line: own ? Number(place[2]) : 0, kind: note ? 'note' : 'error' };
 }

@@ -3,6 +3,22 @@ import { folderOf, joined, nameOf } from './project.js';
 const decoder = new TextDecoder();
 const isRobot = (path, bytes) => /\.(urdf|xml|xacro)$/i.test(path) && /<robot[\s>]/.test(decoder.decode(bytes.subarray(0, 20000)));
 
+const isProblem = (path, bytes) => /\.ya?ml$/i.test(path) && /^posewright\s*:/m.test(decoder.decode(bytes));
+const isPlan = (path, bytes) => nameOf(path) === 'plan.json' || (/\.json$/i.test(path) && /^\s*\{\s*"schema"\s*:\s*"posewright\/plan\//.test(decoder.decode(bytes.subarray(0, 200))));
+
+/** Problem files among dropped ones: one of the usual name first, whatever is in it. @param {Map<string, Uint8Array>} files */
+export function problemsAmong(files) {
+  const usual = ([path]) => /(^|\/)problem\.ya?ml$/.test(path);
+  const problems = [...files].filter((file) => usual(file) || isProblem(...file));
+  return [...problems.filter(usual), ...problems.filter((file) => !usual(file))].map(([path]) => path);
+}
+
+/** The plan among dropped files; undefined: none. @param {Map<string, Uint8Array>} files */
+export function planAmong(files) {
+  const plans = [...files].filter((file) => isPlan(...file)).map(([path]) => path);
+  return plans.find((path) => nameOf(path) === 'plan.json') ?? plans[0];
+}
+
 /** Whether meshes are among dropped files. @param {Map<string, Uint8Array>} files */
 export const hasMesh = (files) => [...files.keys()].some((path) => /\.(stl|obj|ply|dae)$/i.test(path));
 

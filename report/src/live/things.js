@@ -1,4 +1,4 @@
-import { isMap, isSeq } from 'yaml';
+import { isSeq } from 'yaml';
 import { documentOf, metres, withEntry, withoutEntry, withValue, written } from './yaml_edit.js';
 
 /**
@@ -11,6 +11,7 @@ import { documentOf, metres, withEntry, withoutEntry, withValue, written } from 
  * @property {number[]} position m, in the frame of the file: instruments in the measurement frame, bodies in the cell's
  * @property {string} [body] drawn under this name
  * @property {string} [station] whose body it is
+ * @property {string} [instrument] of several: whose station it is
  * @property {import('./yaml_edit.js').Path} [entry] in the list of obstacles
  * @property {{path: import('./yaml_edit.js').Path, values: number[]}} [size] of a box
  */
@@ -19,24 +20,33 @@ import { documentOf, metres, withEntry, withoutEntry, withValue, written } from 
 const point = (value) => (Array.isArray(value) && value.length === 3 ? value.map(metres) : undefined);
 const obstacles = ['workspace', 'collision', 'obstacles'];
 
+/** Each instrument with its path; `name` is empty where there is one alone. */
+function instruments(document) {
+  const { measurement } = document.toJS();
+  return Array.isArray(measurement)
+    ? measurement.map((own, k) => ({ own: own ?? {}, path: ['measurement', k], name: own?.name ?? `instrument ${k + 1}` }))
+    : [{ own: measurement ?? {}, path: ['measurement'], name: '' }];
+}
+
+const named = (instrument, text) => (instrument ? `${instrument}, ${text}` : text);
+
 /** @returns {Thing[]} */
-function stations(document) {
-  const path = ['measurement', 'device', 'stations'];
-  const found = document.getIn(path);
-  if (!isMap(found)) return [];
-  return Object.entries(found.toJSON()).map(([name, value]) => {
-    const own = Array.isArray(value) ? [...path, name] : [...path, name, 'position'];
-    return { key: `station ${name}`, label: `Tracker or station ${name}`, step: 'instrument', path: own, position: point(Array.isArray(value) ? value : value?.position), station: name };
+function stations({ own, path: root, name: instrument }) {
+  const path = [...root, 'device', 'stations'];
+  const found = own.device?.stations;
+  if (!found || typeof found !== 'object' || Array.isArray(found)) return [];
+  return Object.entries(found).map(([name, value]) => {
+    const at = Array.isArray(value) ? [...path, name] : [...path, name, 'position'];
+    const label = instrument ? `${instrument}, station ${name}` : `Tracker or station ${name}`;
+    return { key: named(instrument, `station ${name}`), label, step: 'instrument', path: at, position: point(Array.isArray(value) ? value : value?.position), station: name, instrument };
   });
 }
 
-/** The one of camera and board that stands still. @returns {Thing[]} */
-function cameraThings(document) {
-  const measurement = document.toJS().measurement ?? {};
-  if (measurement.type !== 'camera') return [];
-  const name = measurement.mount === 'fixed' ? 'camera' : 'board';
-  const path = ['measurement', name, 'position'];
-  return [{ key: name, label: name === 'camera' ? 'Camera' : 'Board', step: 'instrument', path, position: point(measurement[name]?.position) }];
+/** The one of camera and board that stands still; neither where the instrument rides on a tip. @returns {Thing[]} */
+function cameraThings({ own, path, name: instrument }) {
+  if (own.type !== 'camera' || own.in) return [];
+  const name = own.mount === 'fixed' ? 'camera' : 'board';
+  return [{ key: named(instrument, name), label: named(instrument, name === 'camera' ? 'Camera' : 'Board'), step: 'instrument', path: [...path, name, 'position'], position: point(own[name]?.position) }];
 }
 
 /** @returns {Thing[]} */
@@ -61,7 +71,7 @@ function bodies(document) {
 export function thingsOf(text) {
   const document = documentOf(text);
   if (!document) return [];
-  return [...stations(document), ...cameraThings(document), ...bodies(document)].filter((t) => t.position?.every(Number.isFinite));
+  return [...instruments(document).flatMap((one) => [...stations(one), ...cameraThings(one)]), ...bodies(document)].filter((t) => t.position?.every(Number.isFinite));
 }
 
 /** The text with a thing elsewhere; the body of a station goes with it. @param {string} text @param {Thing} thing @param {number[]} position */

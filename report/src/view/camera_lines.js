@@ -1,13 +1,18 @@
 import { transformed } from './extent.js';
 import { composed } from './kinematics.js';
 
+/** The camera that reads at a keyframe; undefined: none does. @param {import('../types.js').Report} report @param {{instrument?: string}} keyframe */
+const cameraAt = (report, keyframe) => report.cameras.find((c) => c.instrument === keyframe.instrument);
+
 /**
- * Field of view and board in the measurement frame, as pairs of points.
- * @param {any} camera Report.camera @param {number[]} tip @returns {import('./picture.js').CameraLines}
+ * Field of view and board of the camera that reads, in the measurement frame, as pairs of points; undefined: none does.
+ * @param {import('../types.js').Report} report @param {import('./interpolate.js').Drawn} drawn
+ * @returns {import('./picture.js').CameraLines|undefined}
  */
-export function cameraLines(camera, tip) {
-  const eye = camera.on_tip ? composed(tip, camera.camera) : camera.camera;
-  const board = camera.on_tip ? camera.board : composed(tip, camera.board);
+export function cameraLines(report, drawn) {
+  const camera = cameraAt(report, drawn);
+  if (!camera) return undefined;
+  const [eye, board] = [camera.camera, camera.board].map(({ frame, placement }) => composed(drawn.frames[frame], placement));
   const points = camera.points.map((p) => transformed(board, p));
   const middle = [0, 1, 2].map((k) => points.reduce((sum, p) => sum + p[k], 0) / points.length);
   const depth = Math.hypot(...middle.map((v, k) => v - eye[k]));

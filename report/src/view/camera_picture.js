@@ -5,16 +5,19 @@ import { h, svg } from '../dom.js';
  * @param {import('../pose_list.js').PoseList} list
  */
 export function cameraPicture(list) {
-  const { camera } = list.report;
-  if (!camera) return null;
-  const [width, height] = camera.size;
-  const drawing = svg('svg', { class: 'camera', viewBox: `0 0 ${width} ${height}`, role: 'img' });
+  const { cameras } = list.report;
+  if (cameras.length === 0) return null;
+  const drawing = svg('svg', { class: 'camera', role: 'img' });
   const caption = h('figcaption', { class: 'note' });
   const element = h('figure', { class: 'camera-picture' }, drawing, caption);
   const fill = () => {
     const pose = list.poses.get(list.current ?? -1);
-    const pixels = pose && list.pictures.get(pose.id);
-    element.hidden = !pose;
+    const camera = pose && cameras.find((c) => c.instrument === pose.instrument);
+    element.hidden = !camera;
+    if (!camera) return;
+    const pixels = list.pictures.get(pose.id);
+    const [width, height] = camera.size;
+    drawing.setAttribute('viewBox', `0 0 ${width} ${height}`);
     const parts = [svg('rect', { class: 'frame', width, height })];
     if (pixels) parts.push(...points(pixels, hiddenPoints(camera, pose), width));
     drawing.replaceChildren(...parts);
@@ -46,7 +49,6 @@ function points(pixels, hidden, width) {
 
 /** @param {any} camera @param {any} pose @param {any[]|undefined} pixels */
 function captionOf(camera, pose, pixels) {
-  if (!pose) return '';
   if (!pixels) return `No picture is predicted at pose ${pose.id}.`;
   const hidden = hiddenPoints(camera, pose).filter(Boolean).length;
   return (

@@ -4,15 +4,9 @@ import { cameraLines } from './camera_lines.js';
 import { placeLabels } from './labels.js';
 import { Picture } from './picture.js';
 import { kindNames, kindOf, countsOf, reasonAt } from './verdicts.js';
+import { beams } from './sights.js';
 import { makeView } from './viewer.js';
 import { layerBoxes, lookButtons } from './viewer_controls.js';
-
-/** A beam from every station to every target: dashed where the instrument does not see the pose. */
-function beams(report, drawn, hidden) {
-  return report.stations.flatMap((station) =>
-    drawn.targets.filter(Boolean).map((to) => ({ from: station.placement.slice(0, 3), to, hidden, label: '' })),
-  );
-}
 
 /** A problem without a plan: its cell, and the robot at configurations of every verdict. */
 export class CellViewer {
@@ -68,9 +62,10 @@ export class CellViewer {
     this.place = Math.max(0, Math.min(this.report.keyframes.length - 1, place));
     this.slider.value = String(this.place);
     const reason = reasonAt(this.report, this.place);
+    const by = this.report.keyframes[this.place]?.instrument;
     this.said.replaceChildren(
       h('span', { class: `dot ${kindOf(reason)}` }),
-      ` ${this.place === 0 ? 'Home' : `Configuration ${this.place}`}: ${reason ?? kindNames.feasible}`,
+      ` ${this.place === 0 ? 'Home' : `Configuration ${this.place}`}${by ? ` for ${by}` : ''}: ${reason ?? kindNames.feasible}`,
     );
     this.#draw();
   }
@@ -81,12 +76,12 @@ export class CellViewer {
     const kind = kindOf(reasonAt(report, place));
     this.view.show({
       drawn,
-      sights: drawn ? beams(report, drawn, kind === 'sight') : [],
+      sights: drawn ? beams(report, drawn.targets, kind === 'sight') : [],
       current: place,
       on: this.all,
       nearest: [],
       gap: undefined,
-      camera: drawn && report.camera ? cameraLines(report.camera, drawn.tip) : undefined,
+      camera: drawn && cameraLines(report, drawn),
       layers: this.layers,
     });
   }

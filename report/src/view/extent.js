@@ -68,7 +68,7 @@ export function sceneExtent(report) {
   for (const keyframe of report.keyframes) {
     points.push(keyframe.tip.slice(0, 3), ...keyframe.lines.flat());
     points.push(.../** @type {number[][]} */ (keyframe.targets.filter((t) => t !== null)));
-    if (report.camera && keyframe.pose) points.push(...cameraLines(report.camera, keyframe.tip).view);
+    if (keyframe.pose) points.push(...(cameraLines(report, keyframe)?.view ?? []));
   }
   const first = report.keyframes[0];
   if (first) for (const body of report.bodies) points.push(...bodyCorners(body, first.frames));

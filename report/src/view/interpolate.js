@@ -1,6 +1,6 @@
 /** Where the robot is between two keyframes, and how movements too small to be seen are drawn larger. */
 
-/** @typedef {Pick<import('../types.js').Keyframe, 'frames'|'lines'|'tip'|'targets'>} Drawn */
+/** @typedef {Pick<import('../types.js').Keyframe, 'frames'|'lines'|'tip'|'targets'|'instrument'>} Drawn */
 
 /** @param {number[]} a @param {number[]} b @param {number} t */
 const mixed = (a, b, t) => a.map((value, k) => value + t * (b[k] - value));
@@ -28,6 +28,7 @@ export function between(a, b, t) {
   if (t >= 1) return b;
   const near = t < 0.5 ? a : b;
   return {
+    instrument: near.instrument,
     frames: a.frames.map((frame, k) => placementBetween(frame, b.frames[k], t)),
     lines: a.lines.map((line, l) =>
       line.length === b.lines[l]?.length ? line.map((p, k) => mixed(p, b.lines[l][k], t)) : (near.lines[l] ?? line),
@@ -44,6 +45,7 @@ export function between(a, b, t) {
 export function exaggerated(drawn, rest, factor) {
   if (factor === 1) return drawn;
   return {
+    instrument: drawn.instrument,
     frames: drawn.frames.map((frame, k) => placementBetween(rest.frames[k], frame, factor)),
     lines: drawn.lines.map((line, l) =>
       line.map((p, k) => (rest.lines[l]?.[k] ? mixed(rest.lines[l][k], p, factor) : p)),

@@ -4,7 +4,7 @@ import { quantity } from '../text/units.js';
 /** Names of stations, the number of the pose beside the tip, the distance where bodies are nearest. */
 export function placeLabels(labels, picture, list, gap, legend, project) {
   const wanted = picture.report.stations.map((s) => ({
-    text: `station ${s.name}`,
+    text: s.instrument ? `${s.instrument}, station ${s.name}` : `station ${s.name}`,
     at: s.placement.slice(0, 3),
     name: '',
   }));
@@ -15,7 +15,9 @@ export function placeLabels(labels, picture, list, gap, legend, project) {
     ...wanted.map(({ text, at, name }) => {
       const place = project(at);
       const label = h('span', { class: `label ${name}` }, text);
-      if (place) label.style.transform = `translate(${place[0].toFixed(0)}px, ${place[1].toFixed(0)}px)`;
+      // Near the right edge a label stands on the left of its place.
+      const back = place && place[0] > 0.8 * labels.clientWidth ? ' translateX(calc(-100% - 18px))' : '';
+      if (place) label.style.transform = `translate(${place[0].toFixed(0)}px, ${place[1].toFixed(0)}px)${back}`;
       else label.hidden = true;
       return label;
     }),

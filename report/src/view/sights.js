@@ -1,5 +1,13 @@
 /** Lines of sight at a stop. */
 
+/** A beam from every station to the targets of its instrument that are drawn. @param {import('../types.js').Report} report @param {(number[]|null)[]} targets @param {boolean} hidden @returns {Sight[]} */
+export const beams = (report, targets, hidden) =>
+  report.stations.flatMap(({ instrument, placement }) =>
+    targets
+      .filter((_, k) => !instrument || report.targets[k].startsWith(`${instrument}.`))
+      .flatMap((to) => (to ? [{ from: placement.slice(0, 3), to, hidden, label: '' }] : [])),
+  );
+
 /**
  * @typedef {{from: number[], to: number[], hidden: boolean, label: string}} Sight
  * @param {import('../types.js').Report} report
@@ -8,6 +16,8 @@
  * @returns {Sight[]}
  */
 export function sightsOf(report, pose, targets) {
+  // Of several instruments nobody judges whether something stands between.
+  if (pose?.instrument) return beams(report, targets, false);
   const stations = new Map(report.stations.map((s) => [s.name, s.placement.slice(0, 3)]));
   const seen = pose?.targets ?? [];
   const sights = [];

@@ -62,7 +62,7 @@ export function viewer(list, movable = true) {
     const nearest = nearestHere(player, list);
     // Where movements are drawn larger, points of bodies are elsewhere.
     gap = nearest?.points && picture.factor === 1 ? nearest : undefined;
-    const camera = drawn && report.camera ? cameraLines(report.camera, drawn.tip) : undefined;
+    const camera = drawn && cameraLines(report, drawn);
     const on = new Set(list.ids);
     view.show({ drawn, sights, current: list.current, on, nearest: nearest?.between ?? [], gap, camera, layers });
     view.canvas.dataset.tip = drawn ? drawn.tip.map((v) => v.toFixed(6)).join(' ') : '';

@@ -27,7 +27,7 @@ export function layerBoxes(report, layers, show) {
   const offers = [];
   if (report.bodies.length > 0) offers.push(['bodies', 'Bodies']);
   if (report.stations.length > 0) offers.push(['sights', 'Lines of sight']);
-  else if (report.camera) offers.push(['sights', 'Field of view']);
+  else if (report.cameras.length > 0) offers.push(['sights', 'Field of view']);
   if (report.candidates?.positions.length > 0) offers.push(['candidates', 'Candidates']);
   const [least, most] = [Math.min, Math.max].map((end) => number((report.candidates?.sensitivity ?? [0]).reduce((a, b) => end(a, b)), 3));
   const scale = h(

@@ -1,7 +1,7 @@
 import { h } from '../../dom.js';
 import { dropZone } from '../dropped.js';
 import { folderOf, joined, nameOf } from '../project.js';
-import { hasMesh, placeMeshes, robotAmong } from '../robot_files.js';
+import { hasMesh, placeMeshes, planAmong, problemsAmong, robotAmong } from '../robot_files.js';
 
 /**
  * @param {import('../main.js').Live} live
@@ -10,20 +10,23 @@ import { hasMesh, placeMeshes, robotAmong } from '../robot_files.js';
 export function robotStep(live, examples) {
   const say = h('p', { class: 'note', role: 'status' });
   const take = async (files) => {
-    const problem = [...files.keys()].find((path) => /(^|\/)problem\.ya?ml$/.test(path));
+    const [problem, ...others] = problemsAmong(files);
+    const plan = planAmong(files);
     const all = new Map([...live.project.given, ...files]);
+    const isPlanOf = (path) => [joined(folderOf(path), 'plan.json'), files.get(plan)];
     if (problem) {
       live.complain('');
-      say.textContent = `${problem} is read.`;
-      const plan = joined(folderOf(problem), 'plan.json');
-      const made = new Map(files.has(plan) ? [[plan, new TextDecoder().decode(files.get(problem))]] : []);
-      live.project.open(all, problem, made);
-      return made.size > 0 && live.showPlan();
+      say.textContent = others.length === 0 ? `${problem} is read.` : `${problem} is read; so can be ${others.slice(0, 5).join(', ')}${others.length > 5 ? ', …' : ''}: drop one alone.`;
+      all.delete(plan);
+      const made = plan ? [isPlanOf(problem)] : [];
+      const text = new TextDecoder().decode(files.get(problem));
+      live.project.open(new Map([...all, ...made]), problem, new Map(made.map(([path]) => [path, text])));
+      return plan && live.showPlan();
     }
-    if (files.size === 1 && files.has('plan.json')) {
+    if (files.size === 1 && plan) {
       if (live.project.text === '') return live.complain('A plan needs its problem file: drop it with the problem file and the robot.');
       live.complain('');
-      live.project.add([[joined(live.project.folder, 'plan.json'), files.get('plan.json')]], live.project.text);
+      live.project.add([isPlanOf(live.project.problem)], live.project.text);
       return live.showPlan();
     }
     const robot = robotAmong(files) ?? (hasMesh(files) ? live.robotOf() : undefined);

@@ -97,9 +97,10 @@ class SimulationRun {
       if (!fitted_.model->linearise(pose.q, {}, {}, out))
         throw CannotDo(fmt::format("pose {} of {} is out of reach", pose.id, list.name));
       fitted_.model->blank_hidden(pose.q, pose.y);
-      const int hidden = int(pose.y.array().isNaN().count());
-      result_.hidden += hidden;
-      result_.readings += int(pose.y.size()) - hidden;
+      const int unread = int(pose.y.array().isNaN().count());
+      // An instrument of a list sees all its targets: the others do not read.
+      if (instruments_of(problem_.measurement) == nullptr) result_.hidden += unread;
+      result_.readings += int(pose.y.size()) - unread;
       experiment_.poses.push_back(std::move(pose));
     }
     result_.poses = int(experiment_.poses.size());

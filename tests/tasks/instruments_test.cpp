@@ -459,6 +459,7 @@ TEST(InstrumentList, SimulationsCoverAndTheirReadingsAreReadBack) {
   const auto model = make_model(planar.problem);
   const MeasuredData back =
       read_measured_data(planar.folder.write("data.csv", simulation.first_readings), planar.problem, *model);
+  EXPECT_EQ(simulation.hidden, 0) << "the others do not read";
   ASSERT_EQ(back.poses.size(), plan.poses.size());
   for (const MeasuredPose& pose : back.poses)
     EXPECT_EQ(pose.y.array().isFinite().count(), pose.q.back() == 0 ? 2 : 1) << "of its own instrument alone";

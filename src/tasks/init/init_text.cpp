@@ -259,7 +259,7 @@ std::string cell_text(const InitFacts& facts, const InitRobot& robot, const Init
     text +=
         "  readable_for: 20                     # the board is in the picture although nobody knows yet where the\n"
         "                                       # camera is: for 20 robots drawn from the tolerances (5 mm and 1 deg\n"
-        "                                       # of camera and board, if a variant's `tolerances` say nothing else)\n";
+        "                                       # of camera and board, if a variant's `tolerance` says nothing else)\n";
   return text + sight_text(facts);
 }
 

@@ -17,7 +17,7 @@ constexpr int always_samples = 1000;
 constexpr double always_share = 0.95;
 constexpr std::uint64_t contact_seed = 271828;
 // Whether a pair is never near is not asked at any price; limits written with fewer digits reach a little further.
-constexpr long most_steps = 2000;
+constexpr long most_looks = 2000;
 constexpr double beyond_limits = 1e-3;
 // Standard deviations of the tolerances that links keep from each other whatever is asked for.
 constexpr double least_sigmas = 3;
@@ -238,7 +238,7 @@ class SceneBuilder {
       std::vector<double> first = middle, last = middle;
       first[std::size_t(moving)] = c.lower - beyond_limits;
       last[std::size_t(moving)] = c.upper + beyond_limits;
-      pair.never_near = keeps_apart(scene_, pair, 0, first, last, most_steps);
+      pair.never_near = keep_apart(scene_, {&pair, 1}, 0, first, last, most_looks);
     }
   }
 

@@ -215,15 +215,8 @@ std::optional<Separation> Collision::nearest(std::span<const double> from, std::
 }
 
 bool Collision::motion_is_free(std::span<const double> from, std::span<const double> to) const {
-  if (first_violation(*scene_, to) != nullptr) return false;
-  std::vector<double> q(from.size());
-  for (const double t : first_looks) {
-    for (std::size_t i = 0; i < q.size(); ++i) q[i] = from[i] + t * (to[i] - from[i]);
-    if (first_violation(*scene_, q) != nullptr) return false;
-  }
   for (int pose = 0; pose < scene_->frames->poses_per_configuration(); ++pose)
-    for (const BodyPair& pair : scene_->pairs)
-      if (!pair.never_near && !keeps_apart(*scene_, pair, pose, from, to)) return false;
+    if (!keep_apart(*scene_, scene_->pairs, pose, from, to)) return false;
   return true;
 }
 

@@ -76,11 +76,11 @@ struct EnoughSpare {
 double spare_of(const Scene& scene, const BodyPair& pair, const Eigen::Isometry3d& X_a, const Eigen::Isometry3d& X_b,
                 const EnoughSpare& enough);
 
-/// True if a pair keeps its clearance all the way on a straight motion of one pose: from state to state, for where it
-/// is d apart, it cannot come too near before it has moved by what d has to spare.
-/// @param most_steps  states looked at before the answer is no
-bool keeps_apart(const Scene& scene, const BodyPair& pair, int pose, std::span<const double> from,
-                 std::span<const double> to, long most_steps = std::numeric_limits<long>::max());
+/// True if pairs keep their clearance all the way on a straight motion of one pose. Where a pair is d apart, it cannot
+/// come too near before it has moved by what d has to spare, on either side; what is left between two states is halved.
+/// @param most_looks  at pairs between the ends before the answer is no
+bool keep_apart(const Scene& scene, std::span<const BodyPair> pairs, int pose, std::span<const double> from,
+                std::span<const double> to, long most_looks = std::numeric_limits<long>::max());
 
 /// @param model       nominal one of the problem; must outlive the scene
 /// @param same_robot  see Collision

@@ -7,6 +7,8 @@
 #include <fcl/geometry/shape/cylinder.h>
 #include <fcl/geometry/shape/sphere.h>
 #include <fcl/narrowphase/collision.h>
+#include <fcl/narrowphase/detail/traversal/collision_node.h>
+#include <fcl/narrowphase/detail/traversal/distance/mesh_distance_traversal_node.h>
 #include <fcl/narrowphase/distance.h>
 
 #include <algorithm>
@@ -29,6 +31,8 @@ using Geometry = fcl::CollisionGeometryd;
 
 // What the iteration for the distance of two hulls may be off by, and more, m.
 constexpr double hull_tolerance = 1e-5;
+// What a clearance between meshes exceeds the one asked for by may be told smaller by this factor.
+constexpr double most_short = 1.6;
 // How far a corner may be above a triangle of a mesh that counts as convex, m.
 constexpr double flat = 1e-7;
 
@@ -49,6 +53,39 @@ double fcl_distance(const Geometry& a, const Eigen::Isometry3d& X_a, const Geome
   fcl::DistanceResultd result(cap);
   fcl::distance(&a, X_a, &b, X_b, request, result);
   return std::clamp(result.min_distance, 0.0, cap);
+}
+
+/// Goes through the boxes of two meshes only as far as it takes to tell whether they are `clear` apart, and then about
+/// how far. A box of each is left out where it can be told to be far enough.
+class ClearanceNode : public fcl::detail::MeshDistanceTraversalNodeOBBRSSd {
+ public:
+  ClearanceNode(double clear, double cap) : clear_(clear), cap_(cap) {}
+
+  bool canStop(double least) const override {
+    const double found = result->min_distance;
+    if (found < clear_ || least >= std::min(cap_, found)) return true;
+    if ((least - clear_) * most_short < found - clear_) return false;
+    left_out_ = std::min(left_out_, least);
+    return true;
+  }
+  double left_out() const { return left_out_; }
+
+ private:
+  double clear_, cap_;
+  mutable double left_out_ = std::numeric_limits<double>::infinity();
+};
+
+/// See clearance_of_faces().
+double fcl_clearance(const Mesh& a, const Eigen::Isometry3d& X_a, const Mesh& b, const Eigen::Isometry3d& X_b,
+                     double clear, double cap) {
+  const fcl::DistanceRequestd request(false);
+  fcl::DistanceResultd result(clear + most_short * (cap - clear));
+  ClearanceNode node(clear, cap);
+  fcl::detail::initialize(node, a, X_a, b, X_b, request, result);
+  constexpr int depth_first = 2;
+  fcl::detail::distance<double>(&node, nullptr, depth_first);
+  const double found = std::max(0.0, result.min_distance);
+  return found < clear ? found : std::min({found, node.left_out(), cap});
 }
 
 /// Nearest points of two shapes that do not meet, as FCL finds them.
@@ -372,6 +409,25 @@ bool within(const Solid& a, const Eigen::Isometry3d& X_a, const Solid& b, const 
   return a.holds(mesh != nullptr ? Eigen::Vector3d(X_ab * b.corners().front()) : c);
 }
 
+/// Distance of two solids whose boxes and hulls have been asked already; see clearance_of_faces().
+/// @param clear  none: the distance itself
+double distance_of_faces(const Solid& a, const Eigen::Isometry3d& X_a, const Solid& b, const Eigen::Isometry3d& X_b,
+                         std::optional<double> clear, double cap) {
+  const auto* plane_a = dynamic_cast<const HalfSpaceSolid*>(&a);
+  const auto* plane_b = dynamic_cast<const HalfSpaceSolid*>(&b);
+  if (plane_a != nullptr && plane_b != nullptr) throw std::invalid_argument("two half spaces have no distance");
+  if (plane_a != nullptr) return std::clamp(above(*plane_a, X_a, b, X_b), 0.0, cap);
+  if (plane_b != nullptr) return std::clamp(above(*plane_b, X_b, a, X_a), 0.0, cap);
+  const auto [one, other] = geometries(static_cast<const FclSolid&>(a), static_cast<const FclSolid&>(b));
+  const bool surfaces = one->getObjectType() == fcl::OT_BVH && other->getObjectType() == fcl::OT_BVH;
+  const double found = clear && surfaces ? fcl_clearance(static_cast<const Mesh&>(*one), X_a,
+                                                         static_cast<const Mesh&>(*other), X_b, *clear, cap)
+                                         : fcl_distance(*one, X_a, *other, X_b, cap);
+  if (found <= 0) return 0.0;
+  // Surfaces that do not meet: one may still be in the other.
+  return within(a, X_a, b, X_b) || within(b, X_b, a, X_a) ? 0.0 : found;
+}
+
 }  // namespace
 
 std::shared_ptr<const Solid> make_solid(const ShapeSpec& shape, const TriangleMesh* mesh) {
@@ -400,7 +456,8 @@ double distance_at_least(const Solid& a, const Eigen::Isometry3d& X_a, const Sol
 
 double distance_of_hulls(const Solid& a, const Eigen::Isometry3d& X_a, const Solid& b, const Eigen::Isometry3d& X_b,
                          double cap) {
-  if (!std::isfinite(a.radius()) || !std::isfinite(b.radius())) return distance(a, X_a, b, X_b, cap);
+  if (!std::isfinite(a.radius()) || !std::isfinite(b.radius()))
+    return distance_of_faces(a, X_a, b, X_b, std::nullopt, cap);
   const Geometry *first = static_cast<const FclSolid&>(a).hull(), *second = static_cast<const FclSolid&>(b).hull();
   if (first == nullptr || second == nullptr) return 0.0;
   return std::max(0.0, fcl_distance(*first, X_a, *second, X_b, cap + hull_tolerance) - hull_tolerance);
@@ -416,18 +473,13 @@ bool are_convex(const Solid& a, const Solid& b) {
 double distance(const Solid& a, const Eigen::Isometry3d& X_a, const Solid& b, const Eigen::Isometry3d& X_b,
                 double cap) {
   if (distance_at_least(a, X_a, b, X_b) >= cap) return cap;
-  const auto* plane_a = dynamic_cast<const HalfSpaceSolid*>(&a);
-  const auto* plane_b = dynamic_cast<const HalfSpaceSolid*>(&b);
-  if (plane_a != nullptr && plane_b != nullptr) throw std::invalid_argument("two half spaces have no distance");
-  if (plane_a != nullptr) return std::clamp(above(*plane_a, X_a, b, X_b), 0.0, cap);
-  if (plane_b != nullptr) return std::clamp(above(*plane_b, X_b, a, X_a), 0.0, cap);
-  const auto &first = static_cast<const FclSolid&>(a), &second = static_cast<const FclSolid&>(b);
-  if (has_surface(first, second) && distance_of_hulls(a, X_a, b, X_b, cap) >= cap) return cap;
-  const auto [one, other] = geometries(first, second);
-  const double found = fcl_distance(*one, X_a, *other, X_b, cap);
-  if (found <= 0) return 0.0;
-  // Surfaces that do not meet: one may still be in the other.
-  return within(a, X_a, b, X_b) || within(b, X_b, a, X_a) ? 0.0 : found;
+  if (!are_convex(a, b) && distance_of_hulls(a, X_a, b, X_b, cap) >= cap) return cap;
+  return distance_of_faces(a, X_a, b, X_b, std::nullopt, cap);
+}
+
+double clearance_of_faces(const Solid& a, const Eigen::Isometry3d& X_a, const Solid& b, const Eigen::Isometry3d& X_b,
+                          double clear, double cap) {
+  return distance_of_faces(a, X_a, b, X_b, clear, cap);
 }
 
 std::optional<std::array<Eigen::Vector3d, 2>> nearest_points(const Solid& a, const Eigen::Isometry3d& X_a,

@@ -36,8 +36,17 @@ class ReachableCheck : public SingleCheck {
     for (std::size_t i = 0; i < milestones_.size(); ++i) near.emplace_back(space_.distance(at, milestones_[i]), i);
     const std::size_t count = std::min(tries, near.size());
     std::partial_sort(near.begin(), near.begin() + std::ptrdiff_t(count), near.end());
-    return std::any_of(near.begin(), near.begin() + std::ptrdiff_t(count),
-                       [&](const auto& n) { return space_.is_free(at, milestones_[n.second]); });
+    // The one that led to the pose asked for before, which is often near.
+    static thread_local std::size_t last = 0;
+    if (const auto known = std::find_if(near.begin(), near.begin() + std::ptrdiff_t(count),
+                                        [](const auto& n) { return n.second == last; });
+        known != near.begin() + std::ptrdiff_t(count))
+      std::rotate(near.begin(), known, known + 1);
+    return std::any_of(near.begin(), near.begin() + std::ptrdiff_t(count), [&](const auto& n) {
+      if (!space_.is_free(at, milestones_[n.second])) return false;
+      last = n.second;
+      return true;
+    });
   }
 
   MotionSpace space_;

@@ -23,8 +23,8 @@ struct CheckContext {
   std::span<const std::vector<double>> robots{};
 };
 
-/// Checks for motions between poses: limits, coupled limits, reach and travel of actuators, collision.
-Checks motion_checks(const CheckContext& context);
+/// Checks for motions between poses but those of bodies: limits, coupled limits, reach and travel of actuators.
+Checks range_checks(const CheckContext& context);
 /// All constraints on a measurement, in the order of cost.
 Checks pose_checks(const CheckContext& context);
 

@@ -82,15 +82,24 @@ class MotionSpace::Implementation {
     }
     const std::vector<Coordinate> inner = proposed_limits(model, problem, all);
     for (const std::size_t i : moving) proposed.push_back(inner[i]);
-    checks = motion_checks({model, problem, all, cell.get()});
+    const CheckContext context{model, problem, all, cell.get()};
+    ranges = range_checks(context);
+    add_collision_check(context, collisions);
     movers = movers_of(model.actuators().empty() ? coordinates : model.actuators(), problem.workspace.motion, problem);
     home = home_configuration(problem.workspace.motion, problem, all);
   }
 
   std::string violation(std::span<const double> configuration) const {
-    for (const auto& check : checks)
-      if (const int reason = check->violation(configuration); reason >= 0) return check->reasons()[std::size_t(reason)];
+    for (const Checks* checks : {&ranges, &collisions})
+      for (const auto& check : *checks)
+        if (const int reason = check->violation(configuration); reason >= 0)
+          return check->reasons()[std::size_t(reason)];
     return {};
+  }
+
+  static bool hold(const Checks& checks, std::span<const double> configuration) {
+    return std::all_of(checks.begin(), checks.end(),
+                       [&](const auto& check) { return check->violation(configuration) < 0; });
   }
 
   std::vector<double> whole(std::span<const double> q) const {
@@ -112,7 +121,7 @@ class MotionSpace::Implementation {
   const IdentificationModel& model;
   std::vector<Coordinate> all, coordinates, proposed;
   std::vector<std::size_t> moving;  // indices into a configuration
-  Checks checks;
+  Checks ranges, collisions;
   std::vector<Mover> movers;
   std::vector<double> home;
 };
@@ -151,23 +160,23 @@ std::string MotionSpace::violation(std::span<const double> q) const { return imp
 
 bool MotionSpace::is_free(std::span<const double> q) const {
   const std::vector<double> configuration = whole(q);
-  return std::all_of(implementation_->checks.begin(), implementation_->checks.end(),
-                     [&](const auto& check) { return check->violation(configuration) < 0; });
+  return Implementation::hold(implementation_->ranges, configuration) &&
+         Implementation::hold(implementation_->collisions, configuration);
 }
 
 bool MotionSpace::is_free(std::span<const double> from, std::span<const double> to) const {
   const Implementation& own = *implementation_;
-  if (!is_free(from) || !is_free(to)) return false;
+  const std::vector<double> begin = whole(from), end = whole(to);
+  if (!Implementation::hold(own.ranges, begin) || !Implementation::hold(own.ranges, end)) return false;
   // Boxes and linear inequalities hold between two points where they hold at both.
   if (!own.model.actuators().empty()) {
     std::vector<double> q(from.size());
     for (int k = 1; k < actuator_steps; ++k) {
       for (std::size_t i = 0; i < q.size(); ++i) q[i] = from[i] + k * (to[i] - from[i]) / actuator_steps;
-      if (!is_free(q)) return false;
+      if (!Implementation::hold(own.ranges, whole(q))) return false;
     }
   }
-  return own.cell == nullptr || own.cell->collision == nullptr ||
-         own.cell->collision->motion_is_free(whole(from), whole(to));
+  return own.cell == nullptr || own.cell->collision == nullptr || own.cell->collision->motion_is_free(begin, end);
 }
 
 double MotionSpace::least_seconds(std::span<const double> from, std::span<const double> to) const {

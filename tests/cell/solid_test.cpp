@@ -252,6 +252,34 @@ TEST(Distance, OfABracketIsThatOfTheNearerOfItsTwoBoxesAndItsHullIsNoFarther) {
   EXPECT_GT(in_the_corner, 20);
 }
 
+TEST(Clearance, OfMeshesHasTheVerdictOfTheirDistanceAndIsALowerBoundNotFarBelowIt) {
+  const SolidPointer l = mesh(bracket());
+  Random random(12, 0);
+  int near = 0, apart = 0;
+  for (const SolidPointer& other : {l, box(0.4, 0.3, 0.2), mesh(box_mesh({0.3, 0.5, 0.2}))})
+    for (int i = 0; i < 150; ++i) {
+      const Isometry3d X = random_pose(random, 1), Y = random_pose(random, 1);
+      const double d = distance(*l, X, *other, Y, 3);
+      for (const double clear : {0.02, 0.5 * d, d - 1e-6, d + 1e-6, 2 * d + 1e-6})
+        for (const double more : {0.0, 0.1, 1.0}) {
+          if (clear <= 0) continue;
+          const double told = clearance_of_faces(*l, X, *other, Y, clear, clear + more);
+          if (d < clear) {
+            EXPECT_LT(told, clear);
+            EXPECT_GE(told, d - 1e-9);
+            ++near;
+            continue;
+          }
+          const double most = std::min(d, clear + more);
+          EXPECT_LE(told, most + 1e-9);
+          EXPECT_GE(told, clear + (most - clear) / 2 - 1e-9);
+          ++apart;
+        }
+    }
+  EXPECT_GT(near, 500);
+  EXPECT_GT(apart, 500);
+}
+
 TEST(Distance, OfAConvexMeshIsThatOfItsTriangles) {
   Random random(9, 0);
   TriangleMesh points;

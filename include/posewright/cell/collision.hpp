@@ -68,7 +68,7 @@ class Collision {
 
   /// True if the straight motion from `from` to `to` keeps every clearance all the way, not only at some states: a pair
   /// that is d apart keeps its clearance until its bodies can have moved by what d has to spare (bounds on the motion
-  /// of a link as Schwarzer, Saha & Latombe 2005; steps as conservative advancement, Mirtich 1996).
+  /// of a link, and halving of what two states leave open, as Schwarzer, Saha & Latombe 2005).
   bool motion_is_free(std::span<const double> from, std::span<const double> to) const;
 
   /// True if a body other than those of `station` comes nearer than `radius` to the segment at the first pose of q.

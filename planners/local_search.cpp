@@ -60,7 +60,7 @@ void kick(DesignState& state, int candidates, Random& random) {
   const auto count = std::min({std::size_t(6 + random.index(8)), half, state.members().size()});
   for (std::size_t i = 0; i < count; ++i) {
     const int enter = random.index(candidates), position = random.index(int(state.members().size()));
-    if (state.may_enter(enter)) state.apply(position, enter);
+    if (state.may_replace(position, enter)) state.apply(position, enter);
   }
 }
 
@@ -79,7 +79,8 @@ void fill_greedily(DesignState& state, int poses) {
     const Swap best = state.best_addition();
     if (best.enter < 0)
       throw CannotDo("the candidates do not suffice for " + std::to_string(poses) +
-                     " poses at the minimum distance: only " + std::to_string(state.members().size()) + " fit");
+                     " poses at the minimum distance and within the limits: only " +
+                     std::to_string(state.members().size()) + " fit");
     state.add(best.enter);
   }
 }

@@ -55,8 +55,11 @@ std::unique_ptr<LineOfSight> LineOfSight::make(const ProblemFile& file, const Me
   if (!asked) return sight->station_names_.empty() ? nullptr : std::move(sight);
   const std::string key = instrument.name.empty() ? "workspace.line_of_sight" : instrument.name + ": line_of_sight";
   if (sight->station_names_.empty())
-    throw InputError(file.at(asked->line), key + ": the instrument has no position",
-                     "measurement.device.stations are needed (line_of_sight.stations for photogrammetry of a pose)");
+    throw InputError(
+        file.at(asked->line), key + ": the instrument has no position",
+        instrument.name.empty()
+            ? "measurement.device.stations are needed (line_of_sight.stations for photogrammetry of a pose)"
+            : "device.stations are needed");
   if (sight->targets_.empty())
     throw InputError(file.at(asked->line), key + ": the instrument has no targets to be seen",
                      "line_of_sight is for points, position, camera, and pose by photogrammetry");

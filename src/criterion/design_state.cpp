@@ -55,11 +55,22 @@ void DesignState::ban(int candidate, bool banned) {
   judge(candidate);
 }
 
-void DesignState::judge(int candidate) {
+bool DesignState::is_blocked(int candidate, int left) const {
   const auto i = std::size_t(candidate);
   const bool crowded = !crowd_.empty() && crowd_[i] > 0;
-  const bool limited = !free_.empty() && free_[view_.spacing->value_at(candidate)] <= 0;
-  blocked_[i] = used_[i] >= view_.max_repeats || crowded || limited || banned_[i] != 0 ? 1 : 0;
+  return used_[i] >= view_.max_repeats || crowded || left <= 0 || banned_[i] != 0;
+}
+
+int DesignState::left_for(int candidate) const { return free_.empty() ? 1 : free_[view_.spacing->value_at(candidate)]; }
+
+bool DesignState::may_replace(int position, int candidate) const {
+  const int leave = members_[std::size_t(position)];
+  const bool alike = !free_.empty() && view_.spacing->value_at(leave) == view_.spacing->value_at(candidate);
+  return !is_blocked(candidate, left_for(candidate) + (alike ? 1 : 0));
+}
+
+void DesignState::judge(int candidate) {
+  blocked_[std::size_t(candidate)] = is_blocked(candidate, left_for(candidate)) ? 1 : 0;
 }
 
 /// Judges those of its value again where the limit of these is reached or no longer reached.

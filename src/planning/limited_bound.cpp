@@ -4,9 +4,11 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "posewright/criterion/sensitivity.hpp"
 #include "posewright/criterion/summed_information.hpp"
+#include "restricted_design.hpp"
 
 namespace posewright {
 namespace {
@@ -51,13 +53,9 @@ class LimitedWeights {
       const auto at = function_.expand(information());
       if (at == nullptr) return;
       sensitivities(blocks, at->factor, threads_, d);
-      std::vector<double> all(weights_.size(), 0.0);
       double sum = 0.0;
-      for (std::size_t i = 0; i < support.size(); ++i) {
-        all[std::size_t(support[i])] = d[i];
-        sum += weights_[std::size_t(support[i])] * d[i];
-      }
-      if (best_mean(all) - sum < close_enough * function_.degree()) return;
+      for (std::size_t i = 0; i < support.size(); ++i) sum += weights_[std::size_t(support[i])] * d[i];
+      if (best_mean(support, d) - sum < close_enough * function_.degree()) return;
       for (std::size_t i = 0; i < support.size(); ++i) weights_[std::size_t(support[i])] *= d[i];
       keep_limits();
     }
@@ -74,12 +72,14 @@ class LimitedWeights {
     double known = 0.0, sum = 0.0;
     if (choice_.prior.size() > 0) known = (at->factor.transpose() * choice_.prior * at->factor).trace();
     for (std::size_t i = 0; i < d.size(); ++i) sum += weights_[i] * d[i];
-    const double mean = best_mean(d);
+    std::vector<int> all(d.size());
+    std::iota(all.begin(), all.end(), 0);
+    const double mean = best_mean(all, d);
     const double bound = at->value + h * std::log((known + mean) / h) + h * std::log(double(choice_.poses));
     const bool close = mean - sum < close_enough * h;
-    for (std::size_t i = 0; i < taken_.size(); ++i)
-      weights_[i] = (1 - entering) * weights_[i] + entering * taken_[i] / choice_.poses;
-    return {bound, close};
+    for (double& weight : weights_) weight *= 1 - entering;
+    for (const auto& [i, count] : taken_) weights_[std::size_t(i)] += entering * count / choice_.poses;
+    return {with_margin(bound), close};
   }
 
  private:
@@ -92,19 +92,21 @@ class LimitedWeights {
     return weighted_information(choice_.blocks, choice_.prior, positive);
   }
 
-  /// Largest mean of d over plans within the limits; `taken_` has how often it takes each block.
-  double best_mean(const std::vector<double>& d) {
+  /// Largest mean of d over plans of these blocks within the limits; `taken_` has which it takes, and how often.
+  double best_mean(const std::vector<int>& blocks, const std::vector<double>& d) {
     std::vector<int> free = choice_.spacing.most;
-    taken_.assign(d.size(), 0.0);
+    taken_.clear();
     int left = choice_.poses;
     double sum = 0.0;
     for (const int i : by_sensitivity(d)) {
-      int& own = free[choice_.spacing.value_at(i)];
+      const int block = blocks[std::size_t(i)];
+      int& own = free[choice_.spacing.value_at(block)];
       const int count = std::min({left, own, choice_.repeats});
+      if (count == 0) continue;
       own -= count;
       left -= count;
       sum += count * d[std::size_t(i)];
-      taken_[std::size_t(i)] = count;
+      taken_.emplace_back(block, count);
       if (left == 0) break;
     }
     return sum / choice_.poses;
@@ -135,7 +137,8 @@ class LimitedWeights {
   const LimitedChoice& choice_;
   const InformationFunction& function_;
   int threads_;
-  std::vector<double> weights_, taken_;
+  std::vector<double> weights_;
+  std::vector<std::pair<int, int>> taken_;
 };
 
 }  // namespace

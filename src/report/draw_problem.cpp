@@ -18,10 +18,13 @@ namespace {
 constexpr std::uint64_t look_stream = 0x100c;
 
 /// What may be wrong in space, in the order in which it is left out.
-constexpr std::array<void (*)(WorkspaceSpec&), 3> easements = {
-    [](WorkspaceSpec& w) { w.motion.reachable = false; },
-    [](WorkspaceSpec& w) { w.line_of_sight.reset(); },
-    [](WorkspaceSpec& w) { w.collision.reset(); },
+constexpr std::array<void (*)(Problem&), 3> easements = {
+    [](Problem& problem) { problem.workspace.motion.reachable = false; },
+    [](Problem& problem) {
+      problem.workspace.line_of_sight.reset();
+      for_each_instrument(problem.measurement, [](MeasurementSpec& one) { one.line_of_sight.reset(); });
+    },
+    [](Problem& problem) { problem.workspace.collision.reset(); },
 };
 
 class ProblemDrawing {
@@ -66,7 +69,7 @@ class ProblemDrawing {
         if (k == easements.size() || monitor_.should_stop()) throw;
         fault(error.what());
       }
-      easements[k](eased_.workspace);
+      easements[k](eased_);
     }
   }
 

@@ -173,12 +173,13 @@ void tighten(Certificate& certificate, const std::optional<SpectralBound>& spect
   certificate.max_sensitivity_ratio = std::exp(2 * spectral->gap);
 }
 
-/// Counts the limits of the request's spacing, too, where it has some.
+bool has_limits(const SearchRequest& request) { return request.spacing != nullptr && !request.spacing->most.empty(); }
+
+/// Counts the limits of the request's spacing, too.
 /// @param spacing  with the points of the blocks
 void limit(Certificate& certificate, const BlockArray& blocks, const Spacing& spacing, const Joined& joined,
            const InformationFunction& function, const ApproximateDesign& approximate, const SearchRequest& request,
            double offset, const Monitor& monitor) {
-  if (spacing.most.empty()) return;
   const LimitedChoice choice{blocks, spacing, request.poses, std::min(request.repeats.most, request.poses),
                              bound_options(request, joined.prior).prior};
   const double bound = limited_bound(choice, function, approximate, request.planner.threads, monitor);
@@ -253,7 +254,7 @@ Bound bound_only(std::vector<SearchPart> parts, const SearchRequest& request, co
   const ApproximateDesign approximate =
       solve_approximate_design(joined.blocks, criterion->function(), bound_options(request, joined.prior), monitor);
   fill(result.certificate, approximate, joined, request, offset_of(joined, entry));
-  if (request.spacing != nullptr)
+  if (has_limits(request))
     limit(result.certificate, joined.blocks, *request.spacing, joined, criterion->function(), approximate, request,
           offset_of(joined, entry), monitor);
   tighten(result.certificate, spectral, false);
@@ -383,10 +384,10 @@ SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request,
   BlockArray added;
   if (!result.design.added.empty()) added = blocks_at(result.design.added, *space, joined);
   if (degree > 0 && request.certify) fill(result.certificate, approximate, joined, request, offset);
-  const bool limited = degree > 0 && request.certify && request.spacing != nullptr;
+  else if (spectral) fill(result.certificate, {}, joined, request, 0.0);
+  const bool limited = degree > 0 && request.certify && has_limits(request);
   if (limited && result.design.added.empty())
     limit(result.certificate, joined.blocks, *request.spacing, joined, function, approximate, request, offset, monitor);
-  else if (spectral) fill(result.certificate, {}, joined, request, 0.0);
   if (share > 0 && !result.design.added.empty()) {
     // Poses between the candidates count as candidates, so that the bound holds for the plan itself; and so do those
     // that optimal weights over the workspace use.

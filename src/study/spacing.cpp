@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <numeric>
@@ -112,20 +113,12 @@ std::vector<int> left_for_instruments(const std::vector<MeasurementSpec>& instru
   return left;
 }
 
-void limit_instruments(const Problem& problem, const std::vector<Coordinate>& coordinates, const Configurations& known,
-                       const std::optional<int>& poses, Spacing& spacing) {
-  const std::vector<MeasurementSpec>* instruments = instruments_of(problem.measurement);
+void limit_instruments(const Study& study, const Configurations& known, Spacing& spacing) {
+  const std::vector<MeasurementSpec>* instruments = instruments_of(study.problem->measurement);
   if (instruments == nullptr) return;
-  const std::size_t instrument = *instrument_index(coordinates);
+  const std::size_t instrument = *instrument_index(study.first().workspace->coordinates());
   spacing.limited = Eigen::Index(instrument);
   spacing.most = left_for_instruments(*instruments, instrument, known);
-  if (spacing.most.empty() || !poses) return;
-  const long left = std::accumulate(spacing.most.begin(), spacing.most.end(), 0L);
-  if (left < *poses)
-    throw InputError(problem.at(problem.measurement.line),
-                     fmt::format("measurement: its instruments may read {} poses{} by their `most`, and {} are wanted",
-                                 left, known.count() > 0 ? " more" : "", *poses),
-                     "a larger `most`, or fewer poses");
 }
 
 }  // namespace
@@ -139,8 +132,18 @@ PoseDistance pose_distance(const Study& study, const Configurations& known, cons
     distance.kept = distance.usual = usual.keeps_distance();
     if (distance.usual) distance.spacing = std::move(usual);
   }
-  limit_instruments(*study.problem, coordinates, known, poses, distance.spacing);
+  limit_instruments(study, known, distance.spacing);
   return distance;
+}
+
+void PoseDistance::require_room(int poses) const {
+  if (spacing.most.empty()) return;
+  const auto left = std::accumulate(spacing.most.begin(), spacing.most.end(), std::int64_t{0});
+  if (left < poses)
+    throw CannotDo(
+        fmt::format("measurement: by their `most`, the instruments may read {} further poses, and {} are "
+                    "wanted",
+                    left, poses));
 }
 
 std::optional<Spacing> PoseDistance::among(const Configurations& candidates) const {

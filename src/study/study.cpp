@@ -130,9 +130,8 @@ Study with_candidates(Study study, Unidentifiable unidentifiable) {
   if (std::string warning = compensator_warning(problem.robot, coordinates); !warning.empty())
     study.notes.push_back(std::move(warning));
   study.notes.insert(study.notes.end(), study.fixed_notes.begin(), study.fixed_notes.end());
-  std::optional<int> wanted = study.poses;
-  if (wanted) *wanted -= int(study.fixed.count());
-  study.distance = pose_distance(study, known_before(study), wanted);
+  study.distance = pose_distance(study, known_before(study), study.poses);
+  if (study.poses) study.distance.require_room(*study.poses - int(study.fixed.count()));
   keep_away_from_known(study);
   if (study.truth != nullptr) study.discrepancy = make_discrepancy(study);
   return study;

@@ -232,6 +232,7 @@ class ListEvaluation {
     const int threads = study_.planner.threads;
     const Configurations known = with_measured(study_, poses_);
     const PoseDistance distance = pose_distance(study_, known, k);
+    distance.require_room(k);
     const Configurations candidates = distance.away_from(known, study_.configurations, study_.repeats);
     std::vector<SearchPart> parts = search_parts(study_, study_.criterion, candidates, threads);
     // Parts know what was measured before the list; the list's own information comes on top of it, once.

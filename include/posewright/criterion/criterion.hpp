@@ -62,6 +62,8 @@ class DesignState {
   void ban(int candidate, bool banned);
   /// True if the candidate may enter now under the repeat policy, the spacing with its limits, and the bans.
   bool may_enter(int candidate) const { return blocked_[std::size_t(candidate)] == 0; }
+  /// True if it may enter in the place of the member at `position`, which leaves its part of a limit.
+  bool may_replace(int position, int candidate) const;
 
  protected:
   const BlockArray& blocks() const { return *view_.blocks; }
@@ -75,6 +77,9 @@ class DesignState {
   virtual void do_change(int leave, int enter) = 0;
   void count(int candidate, int change);
   void count_limit(int candidate, int change);
+  /// @param left  further members that the limit of the candidate's value allows
+  bool is_blocked(int candidate, int left) const;
+  int left_for(int candidate) const;
   void judge(int candidate);
 
   CandidateView view_;

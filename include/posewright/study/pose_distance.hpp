@@ -35,14 +35,15 @@ struct PoseDistance {
   /// What holds among these candidates; none if they may be chosen in any way.
   std::optional<Spacing> among(const Configurations& candidates) const;
 
+  /// Throws CannotDo if the instruments may not read so many poses beside those that are known.
+  void require_room(int poses) const;
   /// Candidates that repeat no known pose and are as far from each, as the policy wants it. Throws CannotDo if none is.
   Configurations away_from(const Configurations& known, const Configurations& candidates, Repeats repeats) const;
 };
 /// As stated, else usual_spacing() where it applies: not for a list, whose author chose how near poses are to each
 /// other. Limits of instruments are less by the poses that these have read.
 /// @param known  measured or fixed
-/// @param poses  wanted beside them; none: not known yet
-/// Throws InputError if the instruments may not read so many.
+/// @param poses  wanted; none: not known yet
 PoseDistance pose_distance(const Study& study, const Configurations& known, const std::optional<int>& poses);
 
 /// The distances for messages: "5 deg", "2.5 to 5 deg or 12 mm".

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <set>
 
 #include "../fill_plan.hpp"
@@ -170,7 +171,10 @@ class NextRun {
       (n <= measured ? result_.curve : result_.ahead).push_back(errors.points[n]);
     result_.expected = errors.stated[judged() ? measured : errors.stated.size() - 1];
     if (!known_.determined()) return;
-    const int ahead = std::min(poses_looked_ahead, int(candidates_.count()));
+    int ahead = std::min(poses_looked_ahead, int(candidates_.count()));
+    if (spacing_ && !spacing_->most.empty())
+      ahead = int(std::min<std::int64_t>(
+          ahead, std::accumulate(spacing_->most.begin(), spacing_->most.end(), std::int64_t{0})));
     result_.with_three = forecast_with(search_for(parts_for("test_pose"), "test_pose", ahead)).points.back();
   }
 

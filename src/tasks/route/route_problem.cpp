@@ -363,8 +363,10 @@ class Router {
   double readings_of(const MeasurementSpec& instrument, const std::vector<TargetSight>& sights) const {
     const InstrumentTimes times = times_of(instrument, problem_.workspace.motion);
     const double one = options_.reading ? *options_.reading * instrument.repeats : times.reading;
+    const auto* points = std::get_if<PointsMeasurement>(&instrument.instrument);
+    if (points == nullptr || !std::holds_alternative<TrackerNoise>(points->noise)) return one;
     // Without lines of sight it sees all of them.
-    if (times.in_turn == 1 || sights.empty()) return one * times.in_turn;
+    if (sights.empty()) return one * times.in_turn;
     return one * double(std::ranges::count_if(sights, [](const auto& s) { return s.hidden_by.empty(); }));
   }
 

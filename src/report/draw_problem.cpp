@@ -85,6 +85,7 @@ class ProblemDrawing {
   std::vector<double> drawn(const std::vector<Coordinate>& coordinates, int k) const {
     Random random(options_.seed, mix_bits(std::uint64_t(k)) + look_stream);
     std::vector<double> q;
+    q.reserve(coordinates.size());
     for (const Coordinate& c : coordinates)
       q.push_back(c.discrete() ? c.values[std::size_t(random.index(int(c.values.size())))]
                                : random.uniform(c.lower, c.upper));

@@ -15,6 +15,7 @@
 #include "posewright/support/tasks.hpp"
 #include "posewright/version.hpp"
 #include "processes.hpp"
+#include "result_files.hpp"
 #include "session.hpp"
 #include "signals.hpp"
 #include "source_excerpt.hpp"
@@ -116,7 +117,8 @@ int main(int count, char** arguments) {
   };
   try {
     const int code = cli::run_program(cli::Words(arguments + 1, arguments + count));
-    if (std::fflush(stdout) != 0) return complain("standard output cannot be written", cli::cannot_do);
+    if (std::fflush(stdout) != 0)
+      return complain("standard output cannot be written" + cli::saved_before(), cli::cannot_do);
     return end(code);
   } catch (const cli::Interrupted&) {
     return end(cli::interrupted);
@@ -132,11 +134,12 @@ int main(int count, char** arguments) {
   } catch (const CannotDo& error) {
     return complain(error.what(), cli::cannot_do);
   } catch (const std::bad_alloc&) {
-    return complain("not enough memory; ask for fewer candidates", cli::cannot_do);
+    return complain("not enough memory; ask for fewer candidates" + cli::saved_before(), cli::cannot_do);
   } catch (const std::system_error& error) {
     // Of the formatting library if a stream does not take what it prints; else of a thread that cannot be made.
-    return complain(std::ferror(stdout) != 0 ? std::string("standard output cannot be written") : error.what(),
-                    cli::cannot_do);
+    return complain(
+        (std::ferror(stdout) != 0 ? "standard output cannot be written" : error.what()) + cli::saved_before(),
+        cli::cannot_do);
   } catch (const std::exception& error) {
     return complain(std::string("internal error: ") + error.what(), cli::cannot_do);
   }

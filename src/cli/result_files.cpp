@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
 #include <stdexcept>
 
 #include "posewright/formats/pose_formats.hpp"
@@ -155,13 +156,30 @@ std::vector<WrittenWith> written_with(const fs::path& main, const std::vector<Fi
   return result;
 }
 
+namespace {
+
+/// Files of this run that are whole.
+std::vector<fs::path> saved;
+
+}  // namespace
+
+std::string saved_before() {
+  std::string names;
+  for (const fs::path& file : saved) names += (names.empty() ? "; saved as " : ", ") + file.string();
+  return names;
+}
+
 void write_results(const std::vector<FileToWrite>& files) {
   if (files.empty()) return;
   begin_stage(SignalStage::finishing);
+  std::vector<fs::path> names;
+  for (const FileToWrite& file : files) names.push_back(file.file);
+  saved.reserve(saved.size() + names.size());
   try {
     // Stages that came after the first check may have read more.
     for (const FileToWrite& file : files) refuse_inputs(file.file, files_read());
     write_files(files);
+    std::ranges::move(names, std::back_inserter(saved));
   } catch (const std::runtime_error& error) {
     throw CannotDo(error.what() + saved_elsewhere(files));
   }

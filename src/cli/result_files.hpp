@@ -28,4 +28,8 @@ std::vector<WrittenWith> written_with(const std::filesystem::path& main, const s
 /// Throws CannotDo that says what failed and where the results are.
 void write_results(const std::vector<FileToWrite>& files);
 
+/// "; saved as plan.json, poses.csv": files that write_results() has written in this run, for an error after that;
+/// empty if there are none.
+std::string saved_before();
+
 }  // namespace posewright::cli

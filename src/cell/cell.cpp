@@ -25,6 +25,25 @@ void check_stations(const Problem& problem, const Cell& cell) {
     }
 }
 
+std::vector<std::vector<const LineOfSight*>> looking_for_each(
+    const MeasurementSpec& measurement, const std::vector<std::unique_ptr<const LineOfSight>>& sights) {
+  std::vector<std::vector<const LineOfSight*>> looking(sights.size());
+  const std::vector<MeasurementSpec>* instruments = instruments_of(measurement);
+  const auto add = [&](std::size_t reader, std::size_t instrument) {
+    if (sights[instrument] != nullptr) looking[reader].push_back(sights[instrument].get());
+  };
+  for (std::size_t k = 0; k < sights.size(); ++k) {
+    const std::vector<MeasurementSpec>* members = instruments == nullptr ? nullptr : members_of((*instruments)[k]);
+    if (members == nullptr) {
+      add(k, k);
+      continue;
+    }
+    for (const MeasurementSpec& member : *members)
+      add(k, std::size_t(std::ranges::find(*instruments, member.name, &MeasurementSpec::name) - instruments->begin()));
+  }
+  return looking;
+}
+
 void check_body_stations(const CollisionSpec& spec, const ProblemFile& file, const Cell& cell) {
   const auto check = [&](const BodySpec& body) {
     if (body.station.empty()) return;
@@ -91,6 +110,7 @@ std::shared_ptr<const Cell> make_cell(const Problem& problem, const Cell* same_r
     cell->collision = std::make_unique<Collision>(problem, *cell->model,
                                                   same_robot == nullptr ? nullptr : same_robot->collision.get());
   cell->sights = lines_of_sight(problem, *cell->model, cell->collision.get());
+  cell->looking = looking_for_each(problem.measurement, cell->sights);
   cell->instrument = instrument_index(cell->model->coordinates());
   cell->joint_margin = joint_margins(variant, *cell->model);
   if (problem.workspace.collision) check_body_stations(*problem.workspace.collision, problem, *cell);

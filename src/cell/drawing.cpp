@@ -5,7 +5,6 @@
 #include <set>
 
 #include "mesh_file.hpp"
-#include "posewright/model/campaigns.hpp"
 #include "posewright/model/link_geometry.hpp"
 #include "posewright/model/model_factory.hpp"
 #include "posewright/model/nominal_placement.hpp"
@@ -112,6 +111,9 @@ Drawing::Drawing(const Problem& problem, const Cell& cell)
   if (const std::vector<MeasurementSpec>* list = instruments_of(problem.measurement)) {
     for (std::size_t k = 0; k < list->size(); ++k) {
       instruments_.push_back((*list)[k].name);
+      readers_.push_back({(*list)[k].name});
+      if (const std::vector<MeasurementSpec>* members = members_of((*list)[k]))
+        for (const MeasurementSpec& member : *members) readers_.back().insert(member.name);
       add_instrument((*list)[k], int(k));
     }
     return;
@@ -161,9 +163,7 @@ Carried Drawing::carried(const MeasurementSpec& measurement, bool on_tip, const 
   if (arm_ == nullptr) carrier.frame = on_tip ? int(frame_names_.size()) - 1 : 0;
   else if (on_tip) carrier = arm_->tip(measurement.of ? measurement.of->value : "");
   else if (measurement.in) carrier = arm_->tip(measurement.in->value);
-  const std::string& instrument = measurement.name;
-  const std::string own = instrument.empty() ? parameters : name_in(instrument, parameters);
-  return {carrier.frame, carrier.X_FrameTip * nominal_placement(model_->parameters(), own, isometry(placement))};
+  return {carrier.frame, carrier.X_FrameTip * nominal_placement(model_->parameters(), parameters, isometry(placement))};
 }
 
 void Drawing::add_camera(const MeasurementSpec& measurement, const InstrumentView& view) {
@@ -194,15 +194,15 @@ void Drawing::add_instrument(const MeasurementSpec& measurement, int index) {
 
 DrawnPose Drawing::at(std::span<const double> q) const {
   DrawnPose pose;
-  const int reader = instruments_.empty() ? 0 : int(q.back());
-  if (!instruments_.empty()) pose.instrument = instruments_[std::size_t(reader)];
+  const std::size_t reader = instruments_.empty() ? 0 : std::size_t(q.back());
+  if (!instruments_.empty()) pose.instrument = instruments_[reader];
   if (arm_ != nullptr) {
     pose.frames.resize(std::size_t(arm_->count()));
     arm_->poses(q, 0, pose.frames);
     const auto placed = [&](const BodyFrames::Tip& tip) {
       return pose.frames[std::size_t(tip.frame)] * tip.X_FrameTip;
     };
-    pose.tip = placed(arm_->tip(tips_.empty() ? "" : tips_[std::size_t(reader)]));
+    pose.tip = placed(arm_->tip(tips_.empty() ? "" : tips_[reader]));
     for (const BodyFrames::Branch& branch : arm_->branches()) {
       Polyline line = {base_};
       for (const int k : branch.frames) line.push_back(pose.frames[std::size_t(k)].translation());
@@ -215,7 +215,8 @@ DrawnPose Drawing::at(std::span<const double> q) const {
     pose.lines = tip_->skeleton(q.first(tip_->coordinates().size()));
   }
   for (const auto& [instrument, target] : targets_) {
-    const bool drawn = instrument == reader && !pose.frames.empty();
+    const bool reads = instruments_.empty() || readers_[reader].contains(instruments_[std::size_t(instrument)]);
+    const bool drawn = reads && !pose.frames.empty();
     pose.targets.push_back(drawn ? std::optional<Eigen::Vector3d>(pose.tip * target) : std::nullopt);
   }
   return pose;

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "posewright/cell/collision.hpp"
-#include "posewright/model/campaigns.hpp"
 #include "posewright/model/nominal_placement.hpp"
 #include "posewright/model/placement.hpp"
 #include "posewright/support/dense.hpp"
@@ -88,7 +87,8 @@ std::vector<std::unique_ptr<const LineOfSight>> lines_of_sight(const Problem& pr
     if (one.line_of_sight && !model.moving_coordinates().empty())
       throw InputError(problem.at(one.line_of_sight->line), "line_of_sight with several tips",
                        "base and tip in place of tips");
-    sights.push_back(model.moving_coordinates().empty()
+    // Those that read together look by the sights of each.
+    sights.push_back(model.moving_coordinates().empty() && members_of(one) == nullptr
                          ? LineOfSight::make(problem, one, one.line_of_sight, model, collision)
                          : nullptr);
   }
@@ -117,8 +117,8 @@ LineOfSight::LineOfSight(const ProblemFile& file, const MeasurementSpec& instrum
   std::vector<InstrumentView::Place> places = view.places;
   for (const StationSpec& station : spec_.stations)
     places.push_back({station, "station." + station.name, "station " + station.name});
-  for (const InstrumentView::Place& place : places) add_station(instrument, place);
-  add_points(instrument, view);
+  for (const InstrumentView::Place& place : places) add_station(place);
+  add_points(view);
   for (std::size_t i = 0; i < model.coordinates().size(); ++i)
     if (model.coordinates()[i].choice() && model.coordinates()[i].name == "station") station_coordinate_ = int(i);
   for (const TargetSpec& reference : spec_.references)
@@ -127,31 +127,20 @@ LineOfSight::LineOfSight(const ProblemFile& file, const MeasurementSpec& instrum
   take_necessary_places();
 }
 
-namespace {
-
-/// Prefix of parameters as the model of a list has it.
-std::string in_list(const MeasurementSpec& instrument, const std::string& parameters) {
-  return instrument.name.empty() || parameters.empty() ? parameters : name_in(instrument.name, parameters);
-}
-
-}  // namespace
-
-void LineOfSight::add_station(const MeasurementSpec& instrument, const InstrumentView::Place& place) {
+void LineOfSight::add_station(const InstrumentView::Place& place) {
   station_names_.push_back(place.station.name);
   X_CarrierStation_.push_back(
-      nominal_placement(model_.parameters(), in_list(instrument, place.parameters), isometry(place.station.placement)));
-  const std::string& words = instrument.name.empty() ? place.words : instrument.name;
-  for (const char* reason : reason_names) reasons_.push_back(std::string(reason) + " " + words);
+      nominal_placement(model_.parameters(), place.parameters, isometry(place.station.placement)));
+  for (const char* reason : reason_names) reasons_.push_back(std::string(reason) + " " + place.words);
 }
 
-void LineOfSight::add_points(const MeasurementSpec& instrument, const InstrumentView& view) {
+void LineOfSight::add_points(const InstrumentView& view) {
   targets_on_tip_ = view.points_on_tip;
   if (!view.points_parameters.empty())
-    X_CarrierTarget_ =
-        nominal_placement(model_.parameters(), in_list(instrument, view.points_parameters), isometry(view.points_at));
+    X_CarrierTarget_ = nominal_placement(model_.parameters(), view.points_parameters, isometry(view.points_at));
   for (const InstrumentView::Point& point : view.points) {
     Eigen::Vector3d p = point.position;
-    if (!point.parameters.empty()) p = nominal_position(model_.parameters(), in_list(instrument, point.parameters), p);
+    if (!point.parameters.empty()) p = nominal_position(model_.parameters(), point.parameters, p);
     targets_.push_back({point.name, X_CarrierTarget_ * p, std::nullopt});
   }
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 #include "posewright/model/campaigns.hpp"
 
@@ -30,45 +31,65 @@ InstrumentChoice::InstrumentChoice(std::vector<InstrumentOfList> instruments) {
   tip_coordinates_ = coordinates_.size();
   std::vector<std::string> names;
   for (InstrumentOfList& one : instruments) {
-    const ExplicitModel& model = *one.model;
     names.push_back(one.name);
+    Part part{nullptr, one.noise_factor * one.noise_factor, one.together, {}, {}, {}};
+    part.parameters.resize(std::size_t(one.model->tip_parameters()));
+    std::iota(part.parameters.begin(), part.parameters.end(), 0);
+    if (one.together) find_own(one, part);
+    else add_own(one, part);
     if (!one.moving.empty()) moving_coordinates_.push_back(std::move(one.moving));
-    const int own = int(parameters_.size());
-    for (const Preference& preference : model.geometric_parameters())
-      if (preference.parameter >= model.tip_parameters())
-        geometric_.push_back({own + preference.parameter - model.tip_parameters(), preference.tier});
-    for (std::size_t i = std::size_t(model.tip_parameters()); i < model.parameters().size(); ++i) {
-      parameters_.push_back(model.parameters()[i]);
-      parameters_.back().name = name_in(one.name, parameters_.back().name);
-    }
-    for (const Reading& reading : model.readings()) readings_.push_back({one.name + "." + reading.name, reading.unit});
-    if (const std::string& reason = model.unmeasurable_reason();
-        !reason.empty() && unmeasurable_reason_.find(reason) == std::string::npos)
-      unmeasurable_reason_ += (unmeasurable_reason_.empty() ? "" : " or ") + reason;
-    const int first_row = rows_;
-    rows_ += model.rows();
-    parts_.push_back({std::move(one.model), first_row, own, one.noise_factor * one.noise_factor});
+    part.model = std::move(one.model);
+    parts_.push_back(std::move(part));
+  }
+  for (Part& part : parts_) {
+    part.inside.assign(parameters_.size(), -1);
+    for (std::size_t i = 0; i < part.parameters.size(); ++i) part.inside[std::size_t(part.parameters[i])] = int(i);
   }
   coordinates_.push_back(make_choice(instrument_coordinate, names));
+}
+
+/// Appends its parameters, readings and rows.
+void InstrumentChoice::add_own(const InstrumentOfList& instrument, Part& part) {
+  const ExplicitModel& model = *instrument.model;
+  const int own = int(parameters_.size());
+  for (const Preference& preference : model.geometric_parameters())
+    if (preference.parameter >= model.tip_parameters())
+      geometric_.push_back({own + preference.parameter - model.tip_parameters(), preference.tier});
+  for (std::size_t i = std::size_t(model.tip_parameters()); i < model.parameters().size(); ++i) {
+    part.parameters.push_back(int(parameters_.size()));
+    parameters_.push_back(model.parameters()[i]);
+    parameters_.back().name = name_in(instrument.name, parameters_.back().name);
+  }
+  for (const Reading& reading : model.readings())
+    readings_.push_back({reading_in(instrument.name, reading.name), reading.unit});
+  if (const std::string& reason = model.unmeasurable_reason();
+      !reason.empty() && unmeasurable_reason_.find(reason) == std::string::npos)
+    unmeasurable_reason_ += (unmeasurable_reason_.empty() ? "" : " or ") + reason;
+  for (int i = 0; i < model.rows(); ++i) part.rows.push_back(rows_++);
+}
+
+/// Finds them among those of the instruments before it.
+void InstrumentChoice::find_own(const InstrumentOfList& instrument, Part& part) const {
+  const ExplicitModel& model = *instrument.model;
+  const auto index_of = [](const auto& all, const std::string& name) {
+    return std::ranges::find(all, name, [](const auto& one) { return one.name; }) - all.begin();
+  };
+  for (std::size_t i = std::size_t(model.tip_parameters()); i < model.parameters().size(); ++i)
+    part.parameters.push_back(int(index_of(parameters_, model.parameters()[i].name)));
+  for (const Reading& reading : model.readings()) part.rows.push_back(index_of(readings_, reading.name));
 }
 
 std::vector<double> InstrumentChoice::correction_of(const Part& part, std::span<const double> correction) const {
   std::vector<double> own;
   if (correction.empty()) return own;
-  const auto of_tip = std::size_t(part.model->tip_parameters()), all = part.model->parameters().size();
-  const auto first = correction.begin() + part.own;
-  own.assign(correction.begin(), correction.begin() + std::ptrdiff_t(of_tip));
-  own.insert(own.end(), first, first + std::ptrdiff_t(all - of_tip));
+  for (const int i : part.parameters) own.push_back(correction[std::size_t(i)]);
   return own;
 }
 
 /// −1: this instrument's readings do not depend on it.
 int InstrumentChoice::index_in(const Part& part, int index) const {
-  const ExplicitModel& model = *part.model;
-  if (const int k = index - tip_column(0, 0); k >= 0) return model.tip_column(0, k);
-  if (index < model.tip_parameters()) return index;
-  const int own = index - part.own;
-  return own >= 0 && own < int(model.parameters().size()) - model.tip_parameters() ? model.tip_parameters() + own : -1;
+  if (const int k = index - tip_column(0, 0); k >= 0) return part.model->tip_column(0, k);
+  return part.inside[std::size_t(index)];
 }
 
 InstrumentChoice::Inside InstrumentChoice::inside(const Point& at, std::span<const int> selected) const {
@@ -92,16 +113,16 @@ Point InstrumentChoice::tip_point(const Part& part, const Point& at) const {
 namespace {
 
 /// Its rows' part of what all rows are given with.
-void share_of_rows(const Eigen::MatrixXd& all, Eigen::Index first, Eigen::Index rows, Eigen::MatrixXd& own) {
-  if (all.size() > 0) own = all.block(first, first, rows, rows);
+void share_of_rows(const Eigen::MatrixXd& all, const std::vector<Eigen::Index>& rows, Eigen::MatrixXd& own) {
+  if (all.size() > 0) own = all(rows, rows);
   else own.resize(0, 0);
 }
 
 /// Unit noise of all rows but those of one instrument.
-void spread_covariance(const Eigen::MatrixXd& own, double variance, Eigen::Index first, Eigen::Index rows,
-                       Eigen::MatrixXd& all) {
-  all.setIdentity(rows, rows);
-  all.block(first, first, own.rows(), own.rows()) = variance * own;
+void spread_covariance(const Eigen::MatrixXd& own, double variance, const std::vector<Eigen::Index>& rows,
+                       Eigen::Index count, Eigen::MatrixXd& all) {
+  all.setIdentity(count, count);
+  all(rows, rows) = variance * own;
 }
 
 }  // namespace
@@ -109,13 +130,13 @@ void spread_covariance(const Eigen::MatrixXd& own, double variance, Eigen::Index
 bool InstrumentChoice::do_linearise(const Point& at, std::span<const int> selected, Linearisation& out) const {
   static thread_local Linearisation own;
   const Inside there = inside(at, selected);
-  const Eigen::Index first = there.part.first_row;
-  share_of_rows(out.reading_share, first, there.rows, own.reading_share);
+  const std::vector<Eigen::Index>& rows = there.part.rows;
+  share_of_rows(out.reading_share, rows, own.reading_share);
   if (!there.part.model->linearise(there.q, there.correction, there.selected, own)) return false;
   out.G.setZero(rows_, Eigen::Index(selected.size()));
   for (std::size_t j = 0; j < there.selected.size(); ++j)
-    out.G.col(there.selected_at[j]).segment(first, there.rows) = own.G.col(Eigen::Index(j));
-  spread_covariance(own.covariance, there.part.variance, first, rows_, out.covariance);
+    out.G(rows, there.selected_at[j]) = own.G.col(Eigen::Index(j));
+  spread_covariance(own.covariance, there.part.variance, rows, rows_, out.covariance);
   return true;
 }
 
@@ -135,26 +156,27 @@ bool InstrumentChoice::do_linearise_factored(const Point& at, std::span<const in
   static thread_local Linearisation own;
   const Inside there = inside(at, selected);
   const ExplicitModel& model = *there.part.model;
-  const Eigen::Index first = there.part.first_row, width = do_block_rows(selected);
-  share_of_rows(out.reading_share, first, there.rows, own.reading_share);
+  const std::vector<Eigen::Index>& rows = there.part.rows;
+  const Eigen::Index width = do_block_rows(selected);
+  share_of_rows(out.reading_share, rows, own.reading_share);
   const int own_width = model.block_rows(there.selected);
   out.basis.setZero(rows_, width);
   out.coefficients.setZero(width, Eigen::Index(selected.size()));
   if (own_width < model.rows()) {
     if (!model.linearise_factored(there.q, there.correction, there.selected, own)) return false;
-    out.basis.block(first, 0, there.rows, own_width) = own.basis;
+    out.basis(rows, Eigen::seqN(0, own_width)) = own.basis;
     for (std::size_t j = 0; j < there.selected.size(); ++j)
       out.coefficients.col(there.selected_at[j]).head(own_width) = own.coefficients.col(Eigen::Index(j));
     out.random_coefficients.setZero(width, own.random_coefficients.cols());
     out.random_coefficients.topRows(own_width) = own.random_coefficients;
   } else {
     if (!model.linearise(there.q, there.correction, there.selected, own)) return false;
-    out.basis.block(first, 0, there.rows, there.rows).setIdentity();
+    for (Eigen::Index i = 0; i < there.rows; ++i) out.basis(rows[std::size_t(i)], i) = 1.0;
     for (std::size_t j = 0; j < there.selected.size(); ++j)
       out.coefficients.col(there.selected_at[j]).head(there.rows) = own.G.col(Eigen::Index(j));
     out.random_coefficients.resize(width, 0);
   }
-  spread_covariance(own.covariance, there.part.variance, first, rows_, out.covariance);
+  spread_covariance(own.covariance, there.part.variance, rows, rows_, out.covariance);
   return true;
 }
 
@@ -163,12 +185,10 @@ bool InstrumentChoice::do_pull_back(const Point& at, std::span<const int> select
   // Nominal values of their own are this model's, and those inside would differentiate where they are not.
   if (!at.correction.empty()) return false;
   const Inside there = inside(at, selected);
-  const Eigen::Index first = there.part.first_row;
-  const Eigen::MatrixXd rows = by_G.middleRows(first, there.rows);
+  const std::vector<Eigen::Index>& rows = there.part.rows;
   std::vector<double> own(there.q.size());
-  if (!there.part.model->pull_back(there.q, there.selected, rows(Eigen::all, there.selected_at),
-                                   there.part.variance * by_covariance.block(first, first, there.rows, there.rows),
-                                   own))
+  if (!there.part.model->pull_back(there.q, there.selected, by_G(rows, there.selected_at),
+                                   there.part.variance * by_covariance(rows, rows), own))
     return false;
   std::copy_n(own.begin(), gradient.size() - 1, gradient.begin());
   return true;
@@ -182,9 +202,10 @@ bool InstrumentChoice::do_read(const Point& at, Eigen::VectorXd& y) const {
   Eigen::Isometry3d X;
   if (!part.model->tip().linearise(tip, {}, X, none, nullptr)) return false;
   const std::vector<double> correction = correction_of(part, at.correction);
+  Eigen::VectorXd own(part.model->rows());
+  part.model->measurement().read({X, std::span(correction).subspan(tip.correction.size()), 0}, own);
   y.setConstant(rows_, std::numeric_limits<double>::quiet_NaN());
-  part.model->measurement().read({X, std::span(correction).subspan(tip.correction.size()), 0},
-                                 y.segment(part.first_row, part.model->rows()));
+  y(part.rows) = own;
   return true;
 }
 
@@ -193,9 +214,9 @@ void InstrumentChoice::segment_by_segment(const Eigen::VectorXd& a, const Eigen:
                                           const Apply& apply) const {
   Eigen::VectorXd all(rows_), own;
   for (const Part& part : parts_) {
-    const auto segment = Eigen::seqN(part.first_row, part.model->rows());
-    apply(*part.model, a(segment), b(segment), own);
-    all(segment) = own;
+    if (part.together) continue;
+    apply(*part.model, a(part.rows), b(part.rows), own);
+    all(part.rows) = own;
   }
   out = std::move(all);
 }
@@ -252,11 +273,12 @@ bool InstrumentChoice::do_reading_twists(const Point& at, Twists& twists) const 
 
 void InstrumentChoice::do_blank_unread(std::span<const double> q, Eigen::VectorXd& y) const {
   const Part& reads = part_at(q);
-  const auto segment = Eigen::seqN(reads.first_row, reads.model->rows());
-  const Eigen::VectorXd own = y(segment);
+  const Eigen::VectorXd own = y(reads.rows);
   y.setConstant(std::numeric_limits<double>::quiet_NaN());
-  y(segment) = own;
+  y(reads.rows) = own;
 }
+
+std::string reading_in(const std::string& instrument, const std::string& reading) { return instrument + "." + reading; }
 
 const MeasurementSpec& instrument_at(const MeasurementSpec& measurement, const std::vector<Coordinate>& coordinates,
                                      std::span<const double> q) {

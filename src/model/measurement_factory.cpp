@@ -10,6 +10,8 @@
 #include "measure_plane.hpp"
 #include "measure_points.hpp"
 #include "measure_pose.hpp"
+#include "measure_together.hpp"
+#include "posewright/model/campaigns.hpp"
 #include "posewright/model/explicit_model.hpp"
 
 namespace posewright {
@@ -36,6 +38,9 @@ Measurement model_of(const CameraMeasurement&, const MeasurementSpec& spec) {
   return std::make_unique<CameraModel>(spec);
 }
 Measurement model_of(const JointsMeasurement&, const MeasurementSpec&) { return nullptr; }
+Measurement model_of(const TogetherMeasurement&, const MeasurementSpec& spec) {
+  return std::make_unique<TogetherModel>(spec);
+}
 // Of several instruments each has a model of its own (InstrumentChoice).
 Measurement model_of(const InstrumentList&, const MeasurementSpec&) { return nullptr; }
 
@@ -82,7 +87,18 @@ std::unique_ptr<IdentificationModel> observe(std::unique_ptr<TipModel> robot, co
 }
 
 InstrumentView view_of(const MeasurementSpec& measurement) {
-  return std::visit([](const auto& instrument) { return view_of(instrument); }, measurement.instrument);
+  InstrumentView view = std::visit([](const auto& instrument) { return view_of(instrument); }, measurement.instrument);
+  if (measurement.name.empty()) return view;
+  const auto in_list = [&](std::string& parameters) {
+    if (!parameters.empty()) parameters = name_in(measurement.name, parameters);
+  };
+  in_list(view.points_parameters);
+  for (InstrumentView::Point& point : view.points) in_list(point.parameters);
+  for (InstrumentView::Place& place : view.places) {
+    in_list(place.parameters);
+    place.words = measurement.name;
+  }
+  return view;
 }
 
 }  // namespace posewright

@@ -1,5 +1,7 @@
 #include "posewright/model/model_factory.hpp"
 
+#include <algorithm>
+
 #include "compensator_geometry.hpp"
 #include "posewright/model/delta.hpp"
 #include "posewright/model/dh_chain.hpp"
@@ -88,11 +90,28 @@ class WaysOfInstruments {
   std::vector<char> tools_;  // per way
 };
 
+/// Throws InputError where targets of some that read together stand for the tool, and others read where the tool is.
+void require_one_tool(const Problem& problem, const std::vector<MeasurementSpec>& instruments,
+                      const WaysOfInstruments::Readings& readings) {
+  for (const MeasurementSpec& one : instruments) {
+    if (members_of(one) == nullptr) continue;
+    std::string with, without;
+    for (const MeasurementSpec& member : *members_of(one)) {
+      const auto at = std::ranges::find(instruments, member.name, &MeasurementSpec::name) - instruments.begin();
+      (readings[std::size_t(at)]->replaces_tool() ? without : with) = member.name;
+    }
+    if (!with.empty() && !without.empty())
+      throw InputError(problem.at(one.line), "'" + without + "' and '" + with + "' cannot read together",
+                       "targets of the one stand for the tool, whose place the other reads");
+  }
+}
+
 std::unique_ptr<IdentificationModel> seen_by_each(const ProblemVariant& variant,
                                                   const std::vector<MeasurementSpec>& instruments) {
   const auto* arm = std::get_if<SerialArmSpec>(&variant.problem.robot);
   WaysOfInstruments::Readings readings;
   for (const MeasurementSpec& one : instruments) readings.push_back(make_measurement(one));
+  require_one_tool(variant.problem, instruments, readings);
   std::optional<WaysOfInstruments> ways;
   if (arm != nullptr && !arm->ways.empty()) ways.emplace(*arm, variant, instruments, readings);
   std::vector<InstrumentOfList> list;
@@ -100,6 +119,7 @@ std::unique_ptr<IdentificationModel> seen_by_each(const ProblemVariant& variant,
     const MeasurementSpec& one = instruments[k];
     list.push_back({one.name, nullptr, one.noise_factor});
     InstrumentOfList& listed = list.back();
+    listed.together = members_of(one) != nullptr;
     auto tip = ways ? ways->of(one, *readings[k], listed.moving) : make_tip(variant);
     listed.model = std::make_unique<ExplicitModel>(std::move(tip), std::move(readings[k]), one.repeatability);
   }

@@ -1,5 +1,7 @@
 #include "posewright/problem/problem.hpp"
 
+#include <algorithm>
+
 #include "posewright/support/error.hpp"
 
 namespace posewright {
@@ -22,7 +24,26 @@ struct SetJointNoise {
 
 }  // namespace
 
+namespace {
+
+/// Each is set up, and the slowest is waited for.
+InstrumentTimes times_together(const std::vector<MeasurementSpec>& members, const MotionSpec& motion) {
+  InstrumentTimes all;
+  for (const MeasurementSpec& member : members) {
+    const InstrumentTimes one = times_of(member, motion);
+    all.setup += one.setup;
+    all.reading = std::max(all.reading, one.reading * one.in_turn);
+  }
+  return all;
+}
+
+}  // namespace
+
 InstrumentTimes times_of(const MeasurementSpec& instrument, const MotionSpec& motion) {
+  if (const std::vector<MeasurementSpec>* members = members_of(instrument)) {
+    const InstrumentTimes all = times_together(*members, motion);
+    return {instrument.setup.value_or(all.setup), instrument.reading.value_or(all.reading)};
+  }
   InstrumentTimes times{instrument.setup.value_or(motion.station_change),
                         instrument.reading.value_or(motion.reading) * instrument.repeats};
   // A tracker follows one target after the other; what else there is reads all at once.

@@ -237,6 +237,14 @@ std::vector<TargetSpec> read_targets(const Value& value) {
 
 namespace {
 
+/// Of an instrument of a list: how many poses it may read, and its times.
+void read_limits(const Section& section, MeasurementSpec& instrument) {
+  if (const Value* most = section.find("most")) instrument.most = most->integer(1, most_stated_poses);
+  if (const Value* reading = section.find("reading"))
+    instrument.reading = reading->number(Quantity::time, Sign::not_negative);
+  if (const Value* setup = section.find("setup")) instrument.setup = setup->number(Quantity::time, Sign::not_negative);
+}
+
 MeasurementSpec read_instrument(const Section& section) {
   MeasurementSpec measurement;
   measurement.line = section.value().line();
@@ -250,10 +258,7 @@ MeasurementSpec read_instrument(const Section& section) {
   if (const Value* repeatability = section.find("repeatability"))
     measurement.repeatability = read_repeatability(*repeatability, type);
   if (const Value* sight = section.find("line_of_sight")) measurement.line_of_sight = read_line_of_sight(*sight);
-  if (const Value* most = section.find("most")) measurement.most = most->integer(1, most_stated_poses);
-  if (const Value* reading = section.find("reading"))
-    measurement.reading = reading->number(Quantity::time, Sign::not_negative);
-  if (const Value* setup = section.find("setup")) measurement.setup = setup->number(Quantity::time, Sign::not_negative);
+  read_limits(section, measurement);
   if (const Value* load = section.find("load"))
     measurement.loaded_minus_unloaded = load->choice({"absolute", "loaded_minus_unloaded"}) != "absolute";
   return measurement;
@@ -286,17 +291,65 @@ std::string read_instrument_name(const Value& value) {
   return name;
 }
 
+bool same_name(const std::optional<Located<std::string>>& a, const std::optional<Located<std::string>>& b) {
+  return a.has_value() == b.has_value() && (!a || a->value == b->value);
+}
+
+/// What members share is theirs alone to say: one visit of one tip.
+void require_common(const Value& item, const MeasurementSpec& first, const MeasurementSpec& other) {
+  if (!same_name(first.of, other.of) || !same_name(first.in, other.in))
+    item.fail("does not read the tip that " + first.name + " reads",
+              "of and in are the same of all that read together");
+  if (!(other.repeatability == first.repeatability))
+    item.fail("has another repeatability than " + first.name, "one visit has one repeatability");
+  if (other.repeats != first.repeats)
+    item.fail("has other repeats than " + first.name, "the same repeats for all that read together");
+}
+
+/// {name: both, together: [tracker, camera]}
+/// @param list  the instruments before it
+MeasurementSpec read_together(const Section& section, const std::vector<MeasurementSpec>& list) {
+  section.allow({"name", "together", "most", "reading", "setup"});
+  MeasurementSpec measurement;
+  measurement.line = section.value().line();
+  std::vector<std::string> names;
+  for (const MeasurementSpec& one : list)
+    if (members_of(one) == nullptr) names.push_back(one.name);
+  const std::string allowed = fmt::format("instruments before it in the list: {}", fmt::join(names, ", "));
+  TogetherMeasurement together;
+  for (const Value& item : section.at("together").items("a list of names is expected")) {
+    const std::string name = item.exact_name().value;
+    const auto found = std::ranges::find(list, name, &MeasurementSpec::name);
+    if (found == list.end() || members_of(*found) != nullptr)
+      item.fail("is " + in_quotes(name) + meant_instead(name, names), allowed);
+    if (std::ranges::find(together.members, name, &MeasurementSpec::name) != together.members.end())
+      item.fail("is " + in_quotes(name) + " once more", allowed);
+    if (!together.members.empty()) require_common(item, together.members.front(), *found);
+    together.members.push_back(*found);
+  }
+  if (together.members.size() < 2) section.at("together").fail("is of one instrument", "two or more, " + allowed);
+  const MeasurementSpec& first = together.members.front();
+  measurement.of = first.of;
+  measurement.in = first.in;
+  measurement.repeatability = first.repeatability;
+  measurement.repeats = first.repeats;
+  measurement.instrument = std::move(together);
+  read_limits(section, measurement);
+  return measurement;
+}
+
 InstrumentList read_instruments(const Value& value) {
   InstrumentList list;
   for (const Value& item : value.items("a list of instruments is expected")) {
     const Section section(item);
     const Value& name = section.at("name");
-    MeasurementSpec instrument = read_instrument(section);
+    const bool together = section.has("together");
+    MeasurementSpec instrument = together ? read_together(section, list.instruments) : read_instrument(section);
     instrument.name = read_instrument_name(name);
     for (const MeasurementSpec& other : list.instruments)
       if (other.name == instrument.name)
         name.fail("is " + in_quotes(instrument.name), "another instrument of the list has this name");
-    require_fits_list(section, instrument);
+    if (!together) require_fits_list(section, instrument);
     list.instruments.push_back(std::move(instrument));
   }
   if (list.instruments.empty()) value.fail("is empty", "at least one instrument is needed");

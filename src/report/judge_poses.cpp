@@ -50,8 +50,7 @@ class PoseJudge {
     judged.pose.sights = sights_of(*setup_.cell, q);
     judged.pose.nearest = nearest_at(*setup_.cell, q);
     for (const DrawnCamera& camera : drawing_.cameras())
-      if (camera.instrument == judged.drawn.instrument)
-        judged.pixels = predicted_pixels(model, camera.instrument, camera.points.size(), q);
+      if (judged.pixels.empty()) judged.pixels = predicted_pixels(model, camera.instrument, camera.points.size(), q);
     return judged;
   }
 

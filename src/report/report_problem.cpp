@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <map>
 #include <numeric>
 #include <set>
 
@@ -240,12 +239,8 @@ class ReportBuilder {
 
   /// Predicted pixels of the board's points.
   void fill_pictures() {
-    std::map<int, std::string> reads;
-    for (const ReportKeyframe& keyframe : report_.keyframes)
-      if (keyframe.pose) reads[*keyframe.pose] = keyframe.instrument;
     for (ReportCamera& camera : report_.cameras)
       for (std::size_t i = 0; i < list_.ids.size(); ++i) {
-        if (reads[list_.ids[i]] != camera.instrument) continue;
         auto pixels =
             predicted_pixels(*study_.first().model, camera.instrument, camera.points.size(), list_.configurations[i]);
         if (!pixels.empty()) camera.pictures.emplace_back(list_.ids[i], std::move(pixels));

@@ -189,6 +189,7 @@ std::vector<Eigen::Vector2d> predicted_pixels(const IdentificationModel& model, 
     return instrument.empty() || reading.name.starts_with(instrument + ".");
   });
   const auto at = Eigen::Index(first - model.readings().begin());
+  if (std::isnan(pixels[at])) return points;
   for (Eigen::Index k = at; k < at + 2 * Eigen::Index(count); k += 2) points.emplace_back(pixels[k], pixels[k + 1]);
   return points;
 }

@@ -20,8 +20,8 @@ void fill_scene(Report& report, const Drawing& drawing, const std::vector<std::p
 /// Drawing of one configuration.
 ReportKeyframe keyframe_at(const Drawing& drawing, std::span<const double> q);
 
-/// u and v (px) of every point of a camera's board; empty where they cannot be predicted.
-/// @param instrument  the camera in a list, which must read at q; empty: it is the only instrument
+/// u and v (px) of every point of a camera's board; empty where it does not read or they cannot be predicted.
+/// @param instrument  the camera in a list; empty: it is the only instrument
 /// @param count       points of its board
 std::vector<Eigen::Vector2d> predicted_pixels(const IdentificationModel& model, const std::string& instrument,
                                               std::size_t count, std::span<const double> q);

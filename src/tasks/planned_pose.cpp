@@ -24,11 +24,11 @@ PlannedPose pose_of(const IdentificationModel& model, std::span<const double> q)
 
 std::vector<TargetSight> sights_of(const Cell& cell, std::span<const double> q) {
   std::vector<TargetSight> result;
-  const LineOfSight* sight = cell.sight_at(q);
-  if (sight == nullptr) return result;
-  const auto [first, last] = sight->stations_of(q);
-  for (int station = first; station <= last; ++station)
-    for (const Sight& s : sight->sights(q, station)) result.push_back(target_sight(*sight, s, station));
+  for (const LineOfSight* sight : cell.sights_at(q)) {
+    const auto [first, last] = sight->stations_of(q);
+    for (int station = first; station <= last; ++station)
+      for (const Sight& s : sight->sights(q, station)) result.push_back(target_sight(*sight, s, station));
+  }
   return result;
 }
 

@@ -1,3 +1,5 @@
+#include <map>
+
 #include "checks.hpp"
 
 namespace posewright {
@@ -22,16 +24,17 @@ class SightCheck : public ValidityCheck {
  public:
   SightCheck(const Cell& cell, bool past_bodies) : cell_(cell), past_bodies_(past_bodies) {
     for (const auto& sight : cell.sights) {
-      first_reasons_.push_back(int(reasons_.size()));
-      if (sight != nullptr && sight->judges())
-        reasons_.insert(reasons_.end(), sight->reasons().begin(), sight->reasons().end());
+      if (sight == nullptr || !sight->judges()) continue;
+      first_reasons_[sight.get()] = int(reasons_.size());
+      reasons_.insert(reasons_.end(), sight->reasons().begin(), sight->reasons().end());
     }
   }
   std::vector<std::string> reasons() const override { return reasons_; }
   int violation(std::span<const double> q) const override {
-    const LineOfSight* sight = cell_.sight_at(q);
-    const int reason = sight == nullptr || !sight->judges() ? -1 : sight->violation(q, past_bodies_);
-    return reason < 0 ? reason : first_reasons_[cell_.instrument_at(q)] + reason;
+    for (const LineOfSight* sight : cell_.sights_at(q))
+      if (sight->judges())
+        if (const int reason = sight->violation(q, past_bodies_); reason >= 0) return first_reasons_.at(sight) + reason;
+    return -1;
   }
   /// Directions and distances alone: what stands between is not asked.
   NecessaryLimits necessary_limits() const override {
@@ -45,7 +48,7 @@ class SightCheck : public ValidityCheck {
   const Cell& cell_;
   bool past_bodies_;
   std::vector<std::string> reasons_;
-  std::vector<int> first_reasons_;  // per instrument
+  std::map<const LineOfSight*, int> first_reasons_;
 };
 
 bool sight_is_asked(const CheckContext& context) { return context.cell != nullptr && context.cell->sight_is_asked(); }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <string>
 #include <vector>
 
 #include "posewright/calibration/fit.hpp"
@@ -17,6 +18,11 @@ inline std::vector<double> random_configuration(const IdentificationModel& model
     q.push_back(c.discrete() ? c.values[std::size_t(random.uniform(0, double(c.values.size())))]
                              : random.uniform(c.lower, c.upper));
   return q;
+}
+
+/// Of a parameter; the number of parameters if there is none of this name.
+inline int parameter_index(const IdentificationModel& model, const std::string& name) {
+  return int(std::ranges::find(model.parameters(), name, &Parameter::name) - model.parameters().begin());
 }
 
 /// Measurable random configurations with nothing read yet.

@@ -3,9 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "posewright/model/five_bar.hpp"
+#include "posewright/model/measurement_factory.hpp"
 #include "posewright/model/model_factory.hpp"
 #include "tests/kit/example_problems.hpp"
 #include "tests/kit/three_tips.hpp"
+#include "tests/kit/virtual_data.hpp"
 
 namespace posewright {
 namespace {
@@ -95,6 +100,103 @@ variants: {v: {parameters: auto}}
                                 return rows_of(plain, ways, *model, q, corrections);
                               }),
             1e-9);
+}
+
+/// Two planar arms of two joints each, whose tips meet in the closed chain.
+std::string two_planar_arms(const FiveBarSpec& spec) {
+  const auto number = [](double value) { return std::to_string(value); };
+  std::string text = "<robot name=\"arms\"><link name=\"root\"/>";
+  const auto joint = [&](const std::string& name, const std::string& parent, const std::string& child, double x,
+                         double y, const std::string& kind) {
+    text += "<link name=\"" + child + "\"/><joint name=\"" + name + "\" type=\"" + kind + "\"><parent link=\"" +
+            parent + "\"/><child link=\"" + child + "\"/><origin xyz=\"" + number(x) + " " + number(y) +
+            " 0\"/><axis xyz=\"0 0 1\"/><limit lower=\"-7\" upper=\"7\" effort=\"1\" velocity=\"1\"/></joint>";
+  };
+  for (int i = 0; i < 2; ++i) {
+    const FiveBarSpec::Leg& leg = spec.legs[std::size_t(i)];
+    const std::string k = std::to_string(i + 1);
+    joint("rho" + k, "root", "proximal" + k, leg.base.x(), leg.base.y(), "revolute");
+    joint("elbow" + k, "proximal" + k, "distal" + k, leg.proximal, 0, "revolute");
+    joint("end" + k, "distal" + k, "tip" + k, leg.distal, 0, "fixed");
+  }
+  return text + "</robot>";
+}
+
+TEST(ForkedChain, TwoArmsWithJoinedTipsTellWhatTheClosedChainTells) {
+  constexpr double encoder = 1e-4;
+  Random random(4, 0);
+  for (int geometry = 0; geometry < 20; ++geometry) {
+    FiveBarSpec spec;
+    for (int i = 0; i < 2; ++i) {
+      // As many digits as the URDF has.
+      const auto drawn = [&](double lower, double upper) {
+        return std::round(1e3 * random.uniform(lower, upper)) / 1e3;
+      };
+      const double side = i == 0 ? -1 : 1;
+      spec.legs[std::size_t(i)] = {
+          {side * drawn(0.1, 0.2), drawn(-0.05, 0.05)}, drawn(0.2, 0.3), drawn(0.3, 0.4), -side};
+    }
+    spec.x_lower = -0.1, spec.x_upper = 0.1, spec.y_lower = 0.3, spec.y_upper = 0.42;
+    spec.encoder_noise = encoder;
+    const TemporaryFolder folder;
+    folder.write("arms.urdf", two_planar_arms(spec));
+    // The joint that joins them lets them turn and has next to no play.
+    const auto arms = make_model(read_problem(folder.write("p.yaml", R"(posewright: 1
+robot: {urdf: arms.urdf, tips: {left: tip1, right: tip2}, encoder_noise: 0.1 mrad}
+measurement:
+  - {name: loop, type: pose, components: [x, y], of: right, in: left, device: {type: isotropic, noise: {position: 1e-12 m, rotation: 1}}}
+  - {name: tracker, type: position, target: [0, 0, 0], of: right, device: {type: isotropic, noise: 1 mm}}
+variants: {v: {parameters: auto}}
+)")));
+    JointsMeasurement sensors;
+    sensors.sigma = encoder;
+    MeasurementSpec measurement;
+    measurement.instrument = sensors;
+    const auto chain = observe(std::make_unique<FiveBar>(spec), measurement, {});
+
+    // The left arm carries the frame of the reading: where it grows, the frame goes on.
+    std::vector<std::pair<std::string, double>> names;
+    std::vector<int> of_arms, of_chain;
+    for (const char* leg : {"1", "2"}) {
+      names.insert(names.end(), {{"rho" + std::string(leg) + ".x", 1.0},
+                                 {"rho" + std::string(leg) + ".y", 1.0},
+                                 {"elbow" + std::string(leg) + ".x", 1.0}});
+      names.emplace_back(leg[0] == '1' ? "base@left.x" : "tool@right.x", leg[0] == '1' ? -1.0 : 1.0);
+      names.insert(names.end(),
+                   {{"rho" + std::string(leg) + ".offset", 1.0}, {"elbow" + std::string(leg) + ".offset", 1.0}});
+      for (const char* own : {"ax", "ay", "proximal", "distal", "offset", "sensor_offset"})
+        of_chain.push_back(parameter_index(*chain, "leg_" + std::string(leg) + "." + own));
+    }
+    Eigen::VectorXd sense(Eigen::Index(names.size()));
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      of_arms.push_back(parameter_index(*arms, names[i].first));
+      sense[Eigen::Index(i)] = names[i].second;
+    }
+    for (int pose = 0; pose < 10; ++pose) {
+      const std::vector<double> at = {random.uniform(spec.x_lower, spec.x_upper),
+                                      random.uniform(spec.y_lower, spec.y_upper)};
+      std::vector<double> rho(2);
+      Eigen::VectorXd elbows;
+      ASSERT_TRUE(chain->actuator_values(at, rho) && chain->predict(at, {}, elbows));
+      std::vector<double> q;
+      for (const Coordinate& c : arms->coordinates()) {
+        const auto k = std::size_t(c.name.back() - '1');
+        q.push_back(c.name.starts_with("rho") ? rho[k] : c.name.starts_with("elbow") ? elbows[Eigen::Index(k)] : 0.0);
+      }
+      Eigen::VectorXd gap;
+      ASSERT_TRUE(arms->predict(q, {}, gap));
+      EXPECT_LT(gap.head<2>().norm(), 1e-12) << "the tips meet";
+      const auto information = [](const IdentificationModel& model, const std::vector<double>& there,
+                                  const std::vector<int>& selected) -> Eigen::MatrixXd {
+        Linearisation out;
+        EXPECT_TRUE(model.linearise(there, {}, selected, out));
+        return out.G.transpose() * out.covariance.ldlt().solve(out.G);
+      };
+      const Eigen::MatrixXd expected = information(*chain, at, of_chain);
+      const Eigen::MatrixXd found = sense.asDiagonal() * information(*arms, q, of_arms) * sense.asDiagonal();
+      EXPECT_LT((found - expected).norm(), 1e-9 * expected.norm());
+    }
+  }
 }
 
 TEST(ForkedChain, StandsWhereAHeldJointPutsIt) {

@@ -136,7 +136,7 @@ INSTANTIATE_TEST_SUITE_P(Examples, GradientOf,
                                          "telescope/within_stroke.yaml", "gough/problem.yaml", "delta/problem.yaml",
                                          "instruments/cables.yaml", "instruments/camera_on_hand.yaml",
                                          "instruments/photogrammetry.yaml", "instruments/tracker_two_stations.yaml",
-                                         "instruments/tracker_and_camera.yaml"),
+                                         "instruments/tracker_and_camera.yaml", "instruments/read_together.yaml"),
                          [](const auto& example_file) { return test_name(example_file.param); });
 
 MeasurementSpec tracker() {

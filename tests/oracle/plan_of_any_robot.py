@@ -39,7 +39,7 @@ except ImportError as error:
 # Not unless they are named.
 LEFT_OUT = {"cell/problem.yaml": "collisions, and motions between poses"}
 LEFT_OUT |= {f"cells/{name}.yaml": "needs its maker's files" for name in ("abb_tracker", "kuka_tracker", "ur_camera")}
-LEFT_OUT |= dict.fromkeys(("instruments/tracker_and_camera.yaml", "instruments/tracker_and_level.yaml", "instruments/four_cameras.yaml", "instruments/datum_cube.yaml", "two_arms/one_tracker.yaml", "humanoid/both_hands.yaml"), "an experiment here has one instrument; tests/tasks/instruments_test.cpp adds them up")
+LEFT_OUT |= dict.fromkeys(("instruments/tracker_and_camera.yaml", "instruments/tracker_and_level.yaml", "instruments/four_cameras.yaml", "instruments/read_together.yaml", "instruments/datum_cube.yaml", "two_arms/one_tracker.yaml", "humanoid/both_hands.yaml"), "an experiment here has one instrument; tests/tasks/instruments_test.cpp adds them up")
 
 
 def planned(program, file, variant, poses, plan_file, *candidates):

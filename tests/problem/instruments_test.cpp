@@ -55,6 +55,28 @@ const Bad bad_instruments[] = {
      "[{name: a, type: position, target: [0, 0, 0], device: {type: isotropic, noise: 1}}, {name: a, type: position, "
      "target: [0, 0, 0], device: {type: isotropic, noise: 1}}]",
      "is 'a'; another instrument of the list has this name"},
+    {"TogetherWithAnUnknown",
+     "[{name: a, type: position, target: [0, 0, 0], device: {type: isotropic, noise: 1}}, {name: c, together: [a, b]}]",
+     "is 'b'; instruments before it in the list: a"},
+    {"TogetherWithItself",
+     "[{name: a, type: position, target: [0, 0, 0], device: {type: isotropic, noise: 1}}, {name: c, together: [a, a]}]",
+     "is 'a' once more"},
+    {"TogetherAlone",
+     "[{name: a, type: position, target: [0, 0, 0], device: {type: isotropic, noise: 1}}, {name: c, together: [a]}]",
+     "is of one instrument; two or more"},
+    {"TogetherWithAnotherRepeatability",
+     "[{name: a, type: position, target: [0, 0, 0], device: {type: isotropic, noise: 1}}, {name: b, type: position, "
+     "target: [0, 0, 0], device: {type: isotropic, noise: 1}, repeatability: 1 mm}, {name: c, together: [a, b]}]",
+     "has another repeatability than a; one visit has one repeatability"},
+    {"TogetherWithOtherRepeats",
+     "[{name: a, type: position, target: [0, 0, 0], device: {type: isotropic, noise: 1}}, {name: b, type: position, "
+     "target: [0, 0, 0], device: {type: isotropic, noise: 1}, repeats: 3}, {name: c, together: [a, b]}]",
+     "has other repeats than a"},
+    {"TogetherOfOtherTips",
+     "[{name: a, type: position, target: [0, 0, 0], device: {type: isotropic, noise: 1}}, {name: b, type: position, "
+     "of: "
+     "left, target: [0, 0, 0], device: {type: isotropic, noise: 1}}, {name: c, together: [a, b]}]",
+     "does not read the tip that a reads"},
     {"InstrumentNameWithADot", "[{name: a.b, type: position, target: [0, 0, 0], device: {type: isotropic, noise: 1}}]",
      "is 'a.b'; a name without any of . @"},
     {"JointSensorsInAList", "[{name: a, type: joints, device: {type: isotropic, noise: 1 mrad}}]",

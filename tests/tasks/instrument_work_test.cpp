@@ -7,11 +7,14 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "posewright/lists/measured_data.hpp"
 #include "posewright/lists/read_poses.hpp"
+#include "posewright/model/model_factory.hpp"
 #include "posewright/tasks/evaluate_problem.hpp"
 #include "posewright/tasks/next_poses.hpp"
 #include "posewright/tasks/plan_problem.hpp"
 #include "posewright/tasks/route_problem.hpp"
+#include "posewright/tasks/simulate_problem.hpp"
 #include "tests/kit/planar_instruments.hpp"
 #include "tests/kit/pose_lists.hpp"
 
@@ -104,6 +107,41 @@ TEST(InstrumentRoute, CountsSetUpAndReadingsOfEachInstrument) {
     changes += label_of(route.poses[i].choices, "instrument") != label_of(route.poses[i - 1].choices, "instrument");
   EXPECT_EQ(changes, 1);
   EXPECT_DOUBLE_EQ(route.change_seconds(), label_of(route.poses.back().choices, "instrument") == "gauge" ? 300 : 600);
+}
+
+TEST(InstrumentsThatReadTogether, TakeTheTimeOfTheSlowest) {
+  const std::string text =
+      with_keys("reading: 20 s, setup: 10 min", "repeatability: 30 um, reading: 3 s, setup: 5 min");
+  const Planar both(
+      replaced_once(text, "setup: 5 min}\n", "setup: 5 min}\n  - {name: both, together: [tracker, gauge]}\n"));
+  const Plan plan = plan_problem(both.problem, {}, Monitor{});
+  // A visit that both read is worth more than that of either.
+  ASSERT_EQ(read_by(plan, "both"), 8);
+  EXPECT_EQ(plan.instruments.at(2).name, "both");
+  EXPECT_EQ(plan.instruments[2].setup, 900);
+  EXPECT_EQ(plan.instruments[2].reading, 160);
+  EXPECT_NEAR(plan.instruments[2].share + plan.prior_share, 1.0, 1e-9);
+  const Route route = route_problem(both.problem, planned_poses(both.problem, plan), {}, Monitor{});
+  EXPECT_DOUBLE_EQ(route.reading_seconds(), 160);
+}
+
+TEST(InstrumentsThatReadTogether, AreCalibratedFromOneRowAPose) {
+  const std::string text = with_keys("most: 3", "repeatability: 30 um");
+  const Planar both(replaced_once(text, "repeatability: 30 um}\nvariants",
+                                  "repeatability: 30 um}\n  - {name: both, together: [tracker, gauge]}\nvariants"));
+  const Plan plan = plan_problem(both.problem, {}, Monitor{});
+  SimulateOptions options;
+  options.experiment.draws = 300;
+  const Simulation simulation = simulate_problem(both.problem, planned_poses(both.problem, plan), options, Monitor{});
+  for (const SimulatedParameter& p : simulation.parameters) {
+    ASSERT_TRUE(p.errors.has_value());
+    EXPECT_NEAR(p.errors->observed / p.predicted, 1.0, 0.15) << p.label.name;
+    EXPECT_NEAR(p.errors->coverage, 0.95, 0.04) << p.label.name;
+  }
+  const auto model = make_model(both.problem);
+  const auto file = both.folder.write("data.csv", simulation.first_readings);
+  for (const MeasuredPose& pose : read_measured_data(file, both.problem, *model).poses)
+    EXPECT_EQ(pose.y.array().isFinite().count(), std::vector<int>({2, 1, 3})[std::size_t(pose.q.back())]);
 }
 
 TEST(InstrumentNext, AnInstrumentThatShowsMoreNoiseIsAskedLess) {

@@ -55,13 +55,6 @@ const std::vector<std::string> names = {"joint_a2.cos1",
                                         "joint_a2.backlash",
                                         "joint_a2.temperature"};
 
-int index_of(const IdentificationModel& model, const std::string& name) {
-  const auto& all = model.parameters();
-  const auto at = std::find_if(all.begin(), all.end(), [&](const Parameter& p) { return p.name == name; });
-  EXPECT_NE(at, all.end()) << name;
-  return int(at - all.begin());
-}
-
 TEST(JointEffects, ReadingsAreThoseOfThePlainArmWithTheJointTurnedByHand) {
   for (const char* variant : {"geometric", "denavit_hartenberg"}) {
     const Problem plain = example("kr270/problem.yaml");
@@ -71,7 +64,7 @@ TEST(JointEffects, ReadingsAreThoseOfThePlainArmWithTheJointTurnedByHand) {
     ASSERT_EQ(with->parameters().size(), without->parameters().size() + names.size());
     const std::vector<double> c = {2e-3, -1e-3, 5e-4, 7e-4, 3e-4, -2e-4, 1e-3, 4e-4, 2e-5};
     std::vector<double> correction(with->parameters().size(), 0.0);
-    for (std::size_t k = 0; k < c.size(); ++k) correction[std::size_t(index_of(*with, names[k]))] = c[k];
+    for (std::size_t k = 0; k < c.size(); ++k) correction[std::size_t(parameter_index(*with, names[k]))] = c[k];
     Random random(3, 1);
     for (int i = 0; i < 20; ++i) {
       std::vector<double> q = random_configuration(*with, random);
@@ -126,7 +119,7 @@ TEST(JointEffects, ColumnsAreTheDifferencesOfReadings) {
 TEST(JointEffects, ReadingsMoveTheTipWithWhatTheirEffectsAdd) {
   Problem problem = arms().front();
   const auto model = make_model(problem);
-  for (const std::string& name : names) model->set_nominal(index_of(*model, name), 0.02);
+  for (const std::string& name : names) model->set_nominal(parameter_index(*model, name), 0.02);
   Random random(7, 1);
   Eigen::Matrix<double, 6, Eigen::Dynamic> twists;
   for (int i = 0; i < 5; ++i) {

@@ -20,6 +20,8 @@ struct Cell {
   std::unique_ptr<const Collision> collision;        ///< null: nothing is checked
   /// Of the instrument, or of each in a list; null: it has no place.
   std::vector<std::unique_ptr<const LineOfSight>> sights;
+  /// Those that look where each instrument of a list reads: its own, or of all that read together.
+  std::vector<std::vector<const LineOfSight*>> looking;
   std::optional<std::size_t> instrument;  ///< coordinate that chooses among those of a list
   /// Deviation of an uncalibrated robot from its readings, per coordinate's name (rad or m): kept from
   /// its limits beside the margin.
@@ -27,7 +29,9 @@ struct Cell {
 
   /// Index of the instrument that reads at q.
   std::size_t instrument_at(std::span<const double> q) const { return instrument ? std::size_t(q[*instrument]) : 0; }
-  const LineOfSight* sight_at(std::span<const double> q) const { return sights[instrument_at(q)].get(); }
+  const std::vector<const LineOfSight*>& sights_at(std::span<const double> q) const {
+    return looking[instrument_at(q)];
+  }
   /// Of the problem's one instrument; null for a list.
   const LineOfSight* sight() const { return instrument ? nullptr : sights.front().get(); }
   /// True if lines of sight constrain configurations, and of one instrument alone the blocks.

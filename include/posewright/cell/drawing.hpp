@@ -3,6 +3,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -99,8 +100,9 @@ class Drawing {
   std::unique_ptr<TipModel> tip_;    // of a parallel robot
   Eigen::Vector3d base_ = Eigen::Vector3d::Zero();
   RootPlace cell_;
-  std::vector<std::string> instruments_;  // of a list
-  std::vector<std::string> tips_;         // per instrument, if they see several: the one that it sees
+  std::vector<std::string> instruments_;        // of a list
+  std::vector<std::set<std::string>> readers_;  // per instrument of a list: itself and those that read with it
+  std::vector<std::string> tips_;               // per instrument, if they see several: the one that it sees
   std::vector<std::string> frame_names_, target_names_;
   std::vector<std::pair<int, Eigen::Vector3d>> targets_;  // index of the instrument; tip frame
   std::vector<DrawnStation> stations_;

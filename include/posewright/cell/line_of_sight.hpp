@@ -97,8 +97,8 @@ class LineOfSight : public Visibility {
 
   LineOfSight(const ProblemFile& file, const MeasurementSpec& instrument, const std::optional<LineOfSightSpec>& asked,
               const IdentificationModel& model, const Collision* collision);
-  void add_station(const MeasurementSpec& instrument, const InstrumentView::Place& place);
-  void add_points(const MeasurementSpec& instrument, const InstrumentView& view);
+  void add_station(const InstrumentView::Place& place);
+  void add_points(const InstrumentView& view);
   void add_normals(const ProblemFile& file);
   bool seen_from(std::span<const double> q, Looked& looked, int station, std::span<char> seen, int* reason,
                  bool past_bodies) const;

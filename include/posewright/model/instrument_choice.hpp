@@ -20,14 +20,19 @@ struct InstrumentOfList {
   std::unique_ptr<ExplicitModel> model;  ///< of the robot at its nominal parameters
   double noise_factor = 1.0;             ///< readings have so many times the noise of the model
   std::vector<char> moving{};            ///< as moving_coordinates(); empty for all: of one tip
+  /// It is made of others of the list: its own parameters and its readings are theirs, by their names in the list.
+  bool together = false;
 };
+
+/// Name of an instrument's reading in a list: "NAME.P1.x".
+std::string reading_in(const std::string& instrument, const std::string& reading);
 
 /// One robot and several instruments, of which one reads at each pose: the discrete coordinate `instrument`, the last,
 /// says which, and so which tip's pose counts where the instruments see several. Parameters: the robot's, once, then
 /// each instrument's own, as "target@NAME.P1.x" (name_in()). Rows and readings are those of all instruments, one after
-/// the other ("NAME.P1.x"). Readings of those that do not read are NaN, their rows zero with unit noise, so that they
-/// tell nothing; and columns are zero where an instrument does not depend on a parameter (another one's, tool.* where
-/// targets stand for the tool).
+/// the other ("NAME.P1.x"); those that read together are a choice of their own without rows of its own. Readings of
+/// those that do not read are NaN, their rows zero with unit noise, so that they tell nothing; and columns are zero
+/// where an instrument does not depend on a parameter (another one's, tool.* where targets stand for the tool).
 class InstrumentChoice : public IdentificationModel {
  public:
   /// @param instruments  of the same robot, no two names alike
@@ -51,12 +56,17 @@ class InstrumentChoice : public IdentificationModel {
   bool do_reading_twists(const Point& at, Twists& twists) const override;
   void do_blank_unread(std::span<const double> q, Eigen::VectorXd& y) const override;
 
-  /// One instrument and where its own things are among all.
+  /// One choice and where its own things are among all.
   struct Part {
     std::unique_ptr<ExplicitModel> model;
-    int first_row = 0, own = 0;  ///< `own`: index of its first own parameter
-    double variance = 1.0;       ///< of its readings, times that of the model
+    double variance = 1.0;           ///< of its readings, times that of the model
+    bool together = false;           ///< as InstrumentOfList::together
+    std::vector<Eigen::Index> rows;  ///< of the model's rows among all
+    std::vector<int> parameters;     ///< of the model's parameters among all
+    std::vector<int> inside;         ///< of all parameters in the model; −1: its readings do not depend on it
   };
+  void add_own(const InstrumentOfList& instrument, Part& part);
+  void find_own(const InstrumentOfList& instrument, Part& part) const;
   struct Inside;
   const Part& part_at(std::span<const double> q) const { return parts_[std::size_t(q.back())]; }
   std::vector<double> correction_of(const Part& part, std::span<const double> correction) const;

@@ -47,7 +47,7 @@ struct InstrumentView {
   std::optional<double> half_angle;  ///< rad, of the cone about `axis` that is in the picture everywhere
 };
 
-/// The view of a problem file's instrument.
+/// The view of a problem file's instrument; parameters of one of a list have their names in the list (name_in()).
 InstrumentView view_of(const MeasurementSpec& measurement);
 
 }  // namespace posewright

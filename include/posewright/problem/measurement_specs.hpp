@@ -124,13 +124,19 @@ struct LineOfSightSpec {
 };
 
 struct MeasurementSpec;
-/// Several instruments: each pose is read by one of them.
+/// Several instruments: each pose is read by one of them. Those that read together are one, after its members.
 struct InstrumentList {
   std::vector<MeasurementSpec> instruments;  ///< at least one, no two of a name
 };
 
-using InstrumentSpec = std::variant<PoseMeasurement, PointsMeasurement, DistanceMeasurement, PlaneMeasurement,
-                                    InclinationMeasurement, CameraMeasurement, JointsMeasurement, InstrumentList>;
+/// Instruments of a list that read the same visit: what the robot does not repeat is common to all of them.
+struct TogetherMeasurement {
+  std::vector<MeasurementSpec> members;  ///< at least two, copies of those in the list
+};
+
+using InstrumentSpec =
+    std::variant<PoseMeasurement, PointsMeasurement, DistanceMeasurement, PlaneMeasurement, InclinationMeasurement,
+                 CameraMeasurement, JointsMeasurement, InstrumentList, TogetherMeasurement>;
 
 /// Repeatability, 1σ: a random displacement at every visit that averaging does not reduce. One displacement of
 /// the tip, common to all that is read during the visit.
@@ -140,6 +146,8 @@ struct Repeatability {
   /// m, each axis, of each target (or reading) on its own. No robot does this; it is there for virtual experiments that
   /// ask for the effect of another truth on a calibration.
   double independent = 0.0;
+
+  bool operator==(const Repeatability&) const = default;
 };
 
 /// Of a list, the other members are those of its instruments. Only those have line_of_sight, most, reading and setup.
@@ -165,12 +173,22 @@ inline const std::vector<MeasurementSpec>* instruments_of(const MeasurementSpec&
   return list == nullptr ? nullptr : &list->instruments;
 }
 
-/// Calls use(instrument) for every instrument of a list, or for the one that there is.
+/// Those that read if `instrument` does; null for one that reads alone.
+inline const std::vector<MeasurementSpec>* members_of(const MeasurementSpec& instrument) {
+  const auto* together = std::get_if<TogetherMeasurement>(&instrument.instrument);
+  return together == nullptr ? nullptr : &together->members;
+}
+
+/// Calls use(instrument) for every instrument of a list, and for its copies in others, or for the one that there is.
 template <class Use>
 void for_each_instrument(MeasurementSpec& measurement, const Use& use) {
-  if (auto* list = std::get_if<InstrumentList>(&measurement.instrument))
-    for (MeasurementSpec& instrument : list->instruments) use(instrument);
-  else use(measurement);
+  if (auto* list = std::get_if<InstrumentList>(&measurement.instrument)) {
+    for (MeasurementSpec& instrument : list->instruments) for_each_instrument(instrument, use);
+    return;
+  }
+  use(measurement);
+  if (auto* together = std::get_if<TogetherMeasurement>(&measurement.instrument))
+    for (MeasurementSpec& member : together->members) use(member);
 }
 
 /// Mutable stations of its instrument; null for one without stations.

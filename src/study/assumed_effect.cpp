@@ -16,7 +16,7 @@ BlockArray along_the_tip(const Study& study, int threads) {
   const IdentificationModel& model = *study.first().model;
   if (model.tips() == 0) return {};
   const std::vector<int> tip = {model.tip_column(0, 0), model.tip_column(0, 1), model.tip_column(0, 2)};
-  return build_blocks(model, tip, thinned(study.configurations, noise_places), threads);
+  return build_blocks(model, tip, thinned(study.configurations, model.coordinates(), noise_places), threads);
 }
 
 bool contain_the_tip(const BlockArray& along) { return along.count() > 0 && !along.all().isZero(0); }
@@ -76,7 +76,9 @@ SearchPart part_with_assumed_effect(const Study& study, const Configurations& co
   const Variant& variant = study.first();
   const auto effect = effect_of(study, threads);
   const EffectFeatures features =
-      EffectFeatures(effect, effect_places(*effect, thinned(study.configurations, pivot_places)), assumed_pivots)
+      EffectFeatures(effect,
+                     effect_places(*effect, thinned(study.configurations, variant.model->coordinates(), pivot_places)),
+                     assumed_pivots)
           .first(assumed_features);
   const auto own = Eigen::Index(variant.columns.selected.size());
   const Eigen::Index columns = features.columns();
@@ -86,7 +88,8 @@ SearchPart part_with_assumed_effect(const Study& study, const Configurations& co
   part.scale = Eigen::VectorXd::Ones(own + columns);
   part.scale.head(own) = variant.scale;
   part.prior = known_with_features(study, features, threads, prior);
-  const BlockArray places = with_features_last(variant, features, thinned(study.configurations, error_places), threads);
+  const BlockArray places = with_features_last(
+      variant, features, thinned(study.configurations, variant.model->coordinates(), error_places), threads);
   const Eigen::MatrixXd errors = places.all() / std::sqrt(double(places.count()));
   part.effects = {int(columns), Eigen::MatrixXd::Identity(columns, columns), errors.leftCols(own),
                   errors.rightCols(columns)};

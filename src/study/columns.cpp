@@ -1,7 +1,10 @@
 #include "posewright/study/columns.hpp"
 
 #include <algorithm>
+#include <numeric>
+#include <ranges>
 
+#include "posewright/study/study.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright {
@@ -38,21 +41,32 @@ std::string dropped_names(const Identifiability& found, const std::vector<Parame
 
 }  // namespace
 
-Configurations thinned(const Configurations& configurations, std::size_t count) {
+Configurations thinned(const Configurations& configurations, const std::vector<Coordinate>& coordinates,
+                       std::size_t count) {
   const std::size_t n = configurations.count(), take = std::min(n, count);
+  std::vector<std::size_t> choices, order(n), taken;
+  for (std::size_t k = 0; k < coordinates.size(); ++k)
+    if (coordinates[k].discrete()) choices.push_back(k);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  // A list that has them in turn would be met at every second place, of one choice alone.
+  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
+    const auto value = [&](std::size_t i) { return [&, i](std::size_t k) { return configurations[i][k]; }; };
+    return std::ranges::lexicographical_compare(choices | std::views::transform(value(a)),
+                                                choices | std::views::transform(value(b)));
+  });
+  for (std::size_t i = 0; i < take; ++i) taken.push_back(order[i * n / take]);
+  std::ranges::sort(taken);
   Configurations result;
   result.dimension = configurations.dimension;
-  for (std::size_t i = 0; i < take; ++i) {
-    const auto q = configurations[i * n / take];
-    result.values.insert(result.values.end(), q.begin(), q.end());
-  }
+  for (const std::size_t i : taken) append(result, configurations[i]);
   return result;
 }
 
 ResolvedColumns resolve_columns(const IdentificationModel& model, const Configurations& configurations,
                                 VariantColumns all, bool prior, int threads) {
   ResolvedColumns resolved;
-  const BlockArray sample = build_blocks(model, all.selected, thinned(configurations, structural_sample), threads);
+  const BlockArray sample =
+      build_blocks(model, all.selected, thinned(configurations, model.coordinates(), structural_sample), threads);
   if (!all.automatic) {
     const Identifiability found = identifiability(sample, all.parameters, exact_options());
     // With fewer rows than columns nothing can be said yet; require_enough_poses() says it.
@@ -89,7 +103,8 @@ class SmallestSet {
   SmallestSet(const IdentificationModel& model, const Configurations& candidates, const VariantColumns& columns,
               int threads)
       : parameters_(columns.parameters),
-        sample_(build_blocks(model, columns.selected, thinned(candidates, structural_sample), threads)),
+        sample_(build_blocks(model, columns.selected, thinned(candidates, model.coordinates(), structural_sample),
+                             threads)),
         order_(most_independent(sample_, columns.parameters)) {}
 
   /// Structure of the best `poses` of them; a few more than bring new rows cost nothing.

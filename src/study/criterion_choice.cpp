@@ -88,7 +88,7 @@ std::string why_not_bias(const Setup& setup, const VariantSpec& first, const std
 
 std::vector<TestPoint> test_points_at_candidates(const Configurations& candidates, const Variant& variant,
                                                  std::vector<TestPlace>& test_places) {
-  const Configurations some = thinned(candidates, places_at_candidates);
+  const Configurations some = thinned(candidates, variant.model->coordinates(), places_at_candidates);
   std::vector<std::vector<double>> places;
   for (std::size_t i = 0; i < some.count(); ++i) {
     const std::span<const double> q = seen_configuration(*variant.model, some[i]);

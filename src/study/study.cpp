@@ -50,8 +50,8 @@ Eigen::VectorXd scale_of(const Variant& variant, const Configurations& configura
   if (scaling == Scaling::tolerance) return tolerances_of(columns);
   const auto m = Eigen::Index(columns.selected.size());
   if (scaling == Scaling::none) return Eigen::VectorXd::Ones(m);
-  const BlockArray sample =
-      build_blocks(*variant.model, columns.selected, thinned(configurations, norm_sample), threads);
+  const BlockArray sample = build_blocks(*variant.model, columns.selected,
+                                         thinned(configurations, variant.model->coordinates(), norm_sample), threads);
   const Eigen::VectorXd effect = (sample.all().colwise().squaredNorm() / double(sample.count())).cwiseSqrt();
   return (effect.array() > 0).select(effect.cwiseInverse(), tolerances_of(columns));
 }

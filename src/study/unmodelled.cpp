@@ -125,7 +125,7 @@ std::vector<Configurations> sets_of(const Configurations& candidates, int poses)
 std::shared_ptr<const EffectFeatures> enough_features(const Variant& variant, const Configurations& candidates,
                                                       int threads) {
   const auto& effect = variant.effect;
-  const Eigen::MatrixXd among = effect_places(*effect, thinned(candidates, pivot_sample));
+  const Eigen::MatrixXd among = effect_places(*effect, thinned(candidates, variant.model->coordinates(), pivot_sample));
   // More than determine the parameters: where these stand on the brink, a feature more or less says little.
   const int rows = variant.model->block_rows(variant.columns.selected),
             all_columns = int(variant.columns.selected.size());
@@ -193,7 +193,7 @@ void allow_for_unmodelled(const Configurations& candidates, int threads, Variant
   // What a calibration found stands for what nobody states.
   const std::optional<CalibratedParameters>& calibrated = variant.problem->parameters;
   const CalibratedEffect* found = calibrated && calibrated->unmodelled ? &*calibrated->unmodelled : nullptr;
-  const Configurations sample = thinned(candidates, size_sample);
+  const Configurations sample = thinned(candidates, variant.model->coordinates(), size_sample);
   UnmodelledSize size{1.0, spec.rotation,
                       spec.length.value_or(found != nullptr ? found->length : UnmodelledSize::assumed_length)};
   variant.effect = std::make_shared<UnmodelledEffect>(*variant.model, size);

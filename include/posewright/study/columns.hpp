@@ -14,8 +14,10 @@ namespace posewright {
 /// Shares of a column's norm below this are rounding: the dependency is exact.
 inline constexpr double exact_dependency = 1e-9;
 
-/// At most `count` of the configurations, evenly through the list.
-Configurations thinned(const Configurations& configurations, std::size_t count);
+/// At most `count` of the configurations, evenly through the list; of each combination of choices (instrument, station,
+/// load case) its share, whatever their order in the list.
+Configurations thinned(const Configurations& configurations, const std::vector<Coordinate>& coordinates,
+                       std::size_t count);
 
 /// A variant's identifiable columns, and the dropped ones.
 struct ResolvedColumns {

@@ -60,9 +60,9 @@ Design Planner::plan(const DesignTask& task, const PlannerOptions& options, cons
     design = do_plan(again, options, monitor);
   }
   if (!std::isfinite(design.value))
-    throw CannotDo("no set of " + std::to_string(task.poses) + " candidates was found that identifies all " +
-                   std::to_string(task.candidates.blocks->columns()) +
-                   " parameters: more poses, another method (exchange) or criterion (o1) may find one");
+    throw NothingIdentifies("no set of " + std::to_string(task.poses) + " candidates was found that identifies all " +
+                            std::to_string(task.candidates.blocks->columns()) +
+                            " parameters: more poses, another method (exchange) or criterion (o1) may find one");
   std::sort(design.members.begin(), design.members.end());
   return design;
 }

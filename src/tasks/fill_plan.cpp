@@ -251,7 +251,8 @@ void fill_instruments(Plan& plan, const Study& study, const Configurations& chos
                       double phi, double degree) {
   const MeasurementSpec& measurement = study.problem->measurement;
   const std::vector<MeasurementSpec>* instruments = instruments_of(measurement);
-  if (instruments == nullptr || chosen.count() == 0) return;
+  // Poses that do not identify the parameters have no information to share out.
+  if (instruments == nullptr || chosen.count() == 0 || !std::isfinite(phi)) return;
   const std::size_t instrument = *instrument_index(study.first().model->coordinates());
   std::vector<int> reads;
   for (std::size_t i = 0; i < chosen.count(); ++i) reads.push_back(int(chosen[i][instrument]));

@@ -262,9 +262,28 @@ class PlanSearch {
 
 }  // namespace
 
+namespace {
+
+/// By o1 where nobody chose a criterion and none of those that count an effect finds poses: it starts from sets that
+/// others do not reach.
+Plan plan_by_some_criterion(const Problem& problem, const RunOptions& run, const Monitor& monitor) {
+  try {
+    return PlanSearch(resolve(problem, run, monitor, Purpose::plan), monitor).plan();
+  } catch (const NothingIdentifies&) {
+    if (problem.design.criterion.value != automatic_criterion) throw;
+  }
+  Problem with_o1 = problem;
+  with_o1.design.criterion.value = "o1";
+  Plan plan = PlanSearch(resolve(with_o1, run, monitor, Purpose::plan), monitor).plan();
+  plan.statistics.notes.emplace_back("Criterion o1, since no poses were found by a criterion that counts effects.");
+  return plan;
+}
+
+}  // namespace
+
 Plan plan_problem(const Problem& problem, const RunOptions& run, const Monitor& monitor) {
   const auto begin = std::chrono::steady_clock::now();
-  Plan plan = PlanSearch(resolve(problem, run, monitor, Purpose::plan), monitor).plan();
+  Plan plan = plan_by_some_criterion(problem, run, monitor);
   plan.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return plan;
 }

@@ -5,11 +5,10 @@
 
 #include <cmath>
 
-#include "posewright/model/five_bar.hpp"
-#include "posewright/model/measurement_factory.hpp"
 #include "posewright/model/model_factory.hpp"
 #include "tests/kit/example_problems.hpp"
 #include "tests/kit/three_tips.hpp"
+#include "tests/kit/two_planar_arms.hpp"
 #include "tests/kit/virtual_data.hpp"
 
 namespace posewright {
@@ -102,26 +101,6 @@ variants: {v: {parameters: auto}}
             1e-9);
 }
 
-/// Two planar arms of two joints each, whose tips meet in the closed chain.
-std::string two_planar_arms(const FiveBarSpec& spec) {
-  const auto number = [](double value) { return std::to_string(value); };
-  std::string text = "<robot name=\"arms\"><link name=\"root\"/>";
-  const auto joint = [&](const std::string& name, const std::string& parent, const std::string& child, double x,
-                         double y, const std::string& kind) {
-    text += "<link name=\"" + child + "\"/><joint name=\"" + name + "\" type=\"" + kind + "\"><parent link=\"" +
-            parent + "\"/><child link=\"" + child + "\"/><origin xyz=\"" + number(x) + " " + number(y) +
-            " 0\"/><axis xyz=\"0 0 1\"/><limit lower=\"-7\" upper=\"7\" effort=\"1\" velocity=\"1\"/></joint>";
-  };
-  for (int i = 0; i < 2; ++i) {
-    const FiveBarSpec::Leg& leg = spec.legs[std::size_t(i)];
-    const std::string k = std::to_string(i + 1);
-    joint("rho" + k, "root", "proximal" + k, leg.base.x(), leg.base.y(), "revolute");
-    joint("elbow" + k, "proximal" + k, "distal" + k, leg.proximal, 0, "revolute");
-    joint("end" + k, "distal" + k, "tip" + k, leg.distal, 0, "fixed");
-  }
-  return text + "</robot>";
-}
-
 TEST(ForkedChain, TwoArmsWithJoinedTipsTellWhatTheClosedChainTells) {
   constexpr double encoder = 1e-4;
   Random random(4, 0);
@@ -148,11 +127,7 @@ measurement:
   - {name: tracker, type: position, target: [0, 0, 0], of: right, device: {type: isotropic, noise: 1 mm}}
 variants: {v: {parameters: auto}}
 )")));
-    JointsMeasurement sensors;
-    sensors.sigma = encoder;
-    MeasurementSpec measurement;
-    measurement.instrument = sensors;
-    const auto chain = observe(std::make_unique<FiveBar>(spec), measurement, {});
+    const auto chain = five_bar_with_elbow_sensors(spec, encoder);
 
     // The left arm carries the frame of the reading: where it grows, the frame goes on.
     std::vector<std::pair<std::string, double>> names;
@@ -175,14 +150,7 @@ variants: {v: {parameters: auto}}
     for (int pose = 0; pose < 10; ++pose) {
       const std::vector<double> at = {random.uniform(spec.x_lower, spec.x_upper),
                                       random.uniform(spec.y_lower, spec.y_upper)};
-      std::vector<double> rho(2);
-      Eigen::VectorXd elbows;
-      ASSERT_TRUE(chain->actuator_values(at, rho) && chain->predict(at, {}, elbows));
-      std::vector<double> q;
-      for (const Coordinate& c : arms->coordinates()) {
-        const auto k = std::size_t(c.name.back() - '1');
-        q.push_back(c.name.starts_with("rho") ? rho[k] : c.name.starts_with("elbow") ? elbows[Eigen::Index(k)] : 0.0);
-      }
+      const std::vector<double> q = closed_configuration(*arms, *chain, at);
       Eigen::VectorXd gap;
       ASSERT_TRUE(arms->predict(q, {}, gap));
       EXPECT_LT(gap.head<2>().norm(), 1e-12) << "the tips meet";

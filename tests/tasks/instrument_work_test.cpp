@@ -17,6 +17,7 @@
 #include "posewright/tasks/simulate_problem.hpp"
 #include "tests/kit/planar_instruments.hpp"
 #include "tests/kit/pose_lists.hpp"
+#include "tests/kit/two_planar_arms.hpp"
 
 namespace posewright {
 namespace {
@@ -160,6 +161,48 @@ TEST(InstrumentNext, AnInstrumentThatShowsMoreNoiseIsAskedLess) {
   };
   EXPECT_EQ(next_reads(1), 3);
   EXPECT_EQ(next_reads(40), 0);
+}
+
+TEST(InstrumentsOfALoop, AreFoundByO1WhereTheChosenCriterionFindsNone) {
+  FiveBarSpec spec;
+  spec.legs = {{{{-0.15, 0.02}, 0.25, 0.35, 1.0}, {{0.15, -0.01}, 0.24, 0.36, -1.0}}};
+  spec.x_lower = -0.1, spec.x_upper = 0.1, spec.y_lower = 0.3, spec.y_upper = 0.45;
+  const TemporaryFolder folder;
+  folder.write("arms.urdf", two_planar_arms(spec));
+  const Problem problem = read_problem(folder.write("p.yaml", R"(posewright: 1
+robot: {urdf: arms.urdf, tips: {left: tip1, right: tip2}, encoder_noise: 0.1 mrad}
+measurement:
+  - {name: loop, type: pose, components: [x, y], of: right, in: left, device: {type: isotropic, noise: {position: 5 um, rotation: 1}}}
+  - {name: tracker, type: position, target: [0, 0, 0], of: right, device: {type: isotropic, noise: 20 um}}
+variants: {v: {parameters: auto, nuisance: ["base.*"], fixed: ["base@left.r?", "base@left.z"]}}
+design: {poses: 24}
+)"));
+  const auto arms = make_model(problem), chain = five_bar_with_elbow_sensors(spec, 1e-4);
+  Random random(2, 0);
+  RunOptions run;
+  run.candidates_from = PoseList{};
+  for (int i = 0; i < 800; ++i) {
+    std::vector<double> q = closed_configuration(
+        *arms, *chain, {random.uniform(spec.x_lower, spec.x_upper), random.uniform(spec.y_lower, spec.y_upper)});
+    q.back() = i % 2;
+    run.candidates_from->configurations.push_back(q);
+  }
+  const Plan plan = plan_problem(problem, run, Monitor{});
+  EXPECT_EQ(plan.criterion, "o1");
+  EXPECT_THAT(plan.statistics.notes, testing::Contains(HasSubstr("Criterion o1, since no poses were found")));
+  // Parameters that the tracker alone can tell are there, although every second candidate is of the loop.
+  EXPECT_GT(read_by(plan, "tracker"), 2);
+  EXPECT_GT(read_by(plan, "loop"), 2);
+}
+
+TEST(InstrumentWorth, IsNotStatedForPosesThatIdentifyNothing) {
+  const Planar planar;
+  PoseList list;
+  for (int i = 0; i < 8; ++i) list.configurations.push_back({0.3 + 1e-7 * i * (i % 3), 0.8 + 1e-7 * i, 0});
+  Problem problem = planar.problem;
+  problem.design.criterion.value = "bias";
+  const PoseListEvaluation evaluation = evaluate_problem(problem, list, {}, Monitor{});
+  EXPECT_TRUE(evaluation.plan.instruments.empty());
 }
 
 TEST(InstrumentSight, HoldsForTheInstrumentThatReads) {

@@ -32,6 +32,12 @@ class CannotDo : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// No set of poses was found that identifies the parameters; another criterion may find one.
+class NothingIdentifies : public CannotDo {
+ public:
+  using CannotDo::CannotDo;
+};
+
 /// A value together with the line (and column, if known) it was written on, for stages that can judge it only later.
 template <class T>
 struct Located {

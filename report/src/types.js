@@ -42,6 +42,7 @@
  *
  * @typedef {object} Camera
  * @property {string} [instrument] of several: its name
+ * @property {string[]} [with] names of several that read together, it among them
  * @property {{frame: number, placement: Placement}} camera in the frame that carries it
  * @property {{frame: number, placement: Placement}} board
  * @property {[number, number]} size px

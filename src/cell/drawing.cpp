@@ -116,6 +116,10 @@ Drawing::Drawing(const Problem& problem, const Cell& cell)
         for (const MeasurementSpec& member : *members) readers_.back().insert(member.name);
       add_instrument((*list)[k], int(k));
     }
+    for (DrawnCamera& camera : cameras_)
+      for (std::size_t k = 0; k < instruments_.size(); ++k)
+        if (instruments_[k] != camera.instrument && readers_[k].contains(camera.instrument))
+          camera.with.push_back(instruments_[k]);
     return;
   }
   add_instrument(problem.measurement, 0);

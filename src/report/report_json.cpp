@@ -119,6 +119,7 @@ Json camera_json(const ReportCamera& camera) {
                {"points", Json::array()},
                {"pictures", Json::array()}};
   if (!camera.instrument.empty()) json["instrument"] = camera.instrument;
+  if (!camera.with.empty()) json["with"] = camera.with;
   for (const Eigen::Vector3d& corner : camera.corners) json["corners"].push_back(point_json(corner));
   for (const auto& [name, position] : camera.points) {
     json["names"].push_back(name);

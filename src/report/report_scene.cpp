@@ -155,6 +155,7 @@ class MotionRecorder {
 
 ReportCamera camera_of(const DrawnCamera& drawn) {
   return {drawn.instrument,
+          drawn.with,
           drawn.camera.frame,
           drawn.board.frame,
           drawn.camera.X_FrameThing,

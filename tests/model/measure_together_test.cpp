@@ -41,7 +41,8 @@ const std::vector<std::string> arm_errors = {"q1.offset", "q2.offset", "q2.x"};
 TEST(ReadTogether, TheVisitsDisplacementIsCommonToAll) {
   const Planar planar(planar_together(", repeatability: 30 um"));
   const auto model = make_model(planar.problem);
-  for (const auto& [q1, q2] : {std::pair(0.3, 0.8), std::pair(-1.2, 1.4), std::pair(0.9, -0.7)}) {
+  for (const auto& joints : {std::pair(0.3, 0.8), std::pair(-1.2, 1.4), std::pair(0.9, -0.7)}) {
+    const double q1 = joints.first, q2 = joints.second;
     // Rows of the tracker and the gauge, m, with errors x of the arm and a displacement e of the tip.
     const auto rows = [&](const Eigen::Vector3d& x, const Eigen::Vector2d& e) {
       Eigen::Vector3d y;

@@ -12,6 +12,7 @@ import {
   traceOfProduct,
 } from '../../report/src/numerics/packed.js';
 import { PlanFigures } from '../../report/src/numerics/plan_figures.js';
+import { cameraOf } from '../../report/src/view/camera_lines.js';
 import { composed } from '../../report/src/view/kinematics.js';
 import { between, exaggerated } from '../../report/src/view/interpolate.js';
 import { amplification, amplified, largestDeviation } from '../../report/src/numerics/leg_points.js';
@@ -235,4 +236,13 @@ test('a plan says what each instrument of its list gives', () => {
       'Instrument camera reads 1 pose and gives 1.0 % of the information; without it 98.86 % would be left.',
   );
   assert.equal(instruments({}), '');
+});
+
+test('a camera reads where it is named and where it reads with others', () => {
+  const [one, other] = /** @type {any[]} */ ([{ instrument: 'left', with: ['both'] }, { instrument: 'right' }]);
+  assert.equal(cameraOf([one, other], 'both'), one);
+  assert.equal(cameraOf([one, other], 'right'), other);
+  assert.equal(cameraOf([one, other], 'tracker'), undefined);
+  const alone = /** @type {any} */ ({});
+  assert.equal(cameraOf([alone], undefined), alone);
 });

@@ -394,6 +394,23 @@ TEST(Drawing, ArmEndsAtTheToolAndCarriesItsTargets) {
     EXPECT_LT((*pose.targets[i] - tool * targets[i].position).norm(), 1e-12);
 }
 
+TEST(Drawing, ShowsTargetsOfAllThatReadTogether) {
+  const Problem problem = read_problem(examples_folder() / "instruments" / "read_together.yaml");
+  const auto cell = make_cell(problem);
+  const Drawing drawing(problem, *cell);
+  const auto drawn_targets = [&](double reader) {
+    const DrawnPose pose = drawing.at(std::vector<double>{0.1, -1.4, 1.6, 0.2, 0.1, 0.3, reader});
+    return std::ranges::count_if(pose.targets, [](const auto& target) { return target.has_value(); });
+  };
+  ASSERT_EQ(drawing.targets(), (std::vector<std::string>{"tracker.P1", "tracker.P2", "tracker.P3"}));
+  EXPECT_EQ(drawn_targets(0), 3);
+  EXPECT_EQ(drawn_targets(1), 0);
+  EXPECT_EQ(drawn_targets(2), 3);
+  ASSERT_EQ(drawing.cameras().size(), 1U);
+  EXPECT_EQ(drawing.cameras()[0].instrument, "camera");
+  EXPECT_EQ(drawing.cameras()[0].with, std::vector<std::string>{"both"});
+}
+
 TEST(Drawing, AThinnedMeshKeepsItsPlace) {
   TriangleMesh sphere;
   constexpr int rings = 100, sectors = 200;

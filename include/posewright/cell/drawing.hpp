@@ -53,7 +53,8 @@ struct DrawnStation {
 
 /// A camera and the points that it looks at.
 struct DrawnCamera {
-  std::string instrument;  ///< empty: there is one
+  std::string instrument;         ///< empty: there is one
+  std::vector<std::string> with;  ///< instruments that read together with it, by their name in the list
   Carried camera, board;
   InstrumentView::Image image;
   std::vector<std::pair<std::string, Eigen::Vector3d>> points;  ///< board frame, m

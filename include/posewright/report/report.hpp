@@ -63,6 +63,7 @@ struct ReportStation {
 /// A camera, its board and where the camera will see the board's points.
 struct ReportCamera {
   std::string instrument;                 ///< of a list
+  std::vector<std::string> with;          ///< as DrawnCamera::with
   int camera_frame = 0, board_frame = 0;  ///< index into Report::frames: what carries it
   Eigen::Isometry3d X_FrameCamera = Eigen::Isometry3d::Identity(), X_FrameBoard = Eigen::Isometry3d::Identity();
   double width = 0, height = 0;                                 ///< px

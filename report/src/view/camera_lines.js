@@ -1,8 +1,8 @@
 import { transformed } from './extent.js';
 import { composed } from './kinematics.js';
 
-/** The camera that reads at a keyframe; undefined: none does. @param {import('../types.js').Report} report @param {{instrument?: string}} keyframe */
-const cameraAt = (report, keyframe) => report.cameras.find((c) => c.instrument === keyframe.instrument);
+/** The camera that reads where this instrument does; undefined: none does. @param {import('../types.js').Camera[]} cameras @param {string} [instrument] */
+export const cameraOf = (cameras, instrument) => cameras.find((c) => c.instrument === instrument || c.with?.includes(instrument ?? ''));
 
 /**
  * Field of view and board of the camera that reads, in the measurement frame, as pairs of points; undefined: none does.
@@ -10,7 +10,7 @@ const cameraAt = (report, keyframe) => report.cameras.find((c) => c.instrument =
  * @returns {import('./picture.js').CameraLines|undefined}
  */
 export function cameraLines(report, drawn) {
-  const camera = cameraAt(report, drawn);
+  const camera = cameraOf(report.cameras, drawn.instrument);
   if (!camera) return undefined;
   const [eye, board] = [camera.camera, camera.board].map(({ frame, placement }) => composed(drawn.frames[frame], placement));
   const points = camera.points.map((p) => transformed(board, p));

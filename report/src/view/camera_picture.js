@@ -1,4 +1,5 @@
 import { h, svg } from '../dom.js';
+import { cameraOf } from './camera_lines.js';
 
 /**
  * What the camera will see at the pose shown: its picture's frame with the board's points where the model predicts them.
@@ -12,7 +13,7 @@ export function cameraPicture(list) {
   const element = h('figure', { class: 'camera-picture' }, drawing, caption);
   const fill = () => {
     const pose = list.poses.get(list.current ?? -1);
-    const camera = pose && cameras.find((c) => c.instrument === pose.instrument);
+    const camera = pose && cameraOf(cameras, pose.instrument);
     element.hidden = !camera;
     if (!camera) return;
     const pixels = list.pictures.get(pose.id);

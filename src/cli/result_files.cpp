@@ -173,6 +173,7 @@ void write_results(const std::vector<FileToWrite>& files) {
   if (files.empty()) return;
   begin_stage(SignalStage::finishing);
   std::vector<fs::path> names;
+  names.reserve(files.size());
   for (const FileToWrite& file : files) names.push_back(file.file);
   saved.reserve(saved.size() + names.size());
   try {

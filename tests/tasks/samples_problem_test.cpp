@@ -174,6 +174,18 @@ TEST(SamplesProblem, FindsTheMountAndBothFramesFromEveryForm) {
   }
 }
 
+TEST(SamplesProblem, FindsTheCameraByTrajectoriesOfHandAndCamera) {
+  Drawn d = drawn(true, 3);
+  for (auto& [tip, seen] : d.samples) seen = seen.inverse();  // the camera in the frame of the board
+  const TemporaryFolder folder;
+  const auto file = folder.write("samples.csv", csv_text(d));
+  const SamplesProblem found = samples_problem(file, {});
+  EXPECT_FALSE(found.on_hand) << "the moving thing that is seen is the camera itself";
+  const Calibration result = calibrated(file, found);
+  EXPECT_LT((frame(result, "tool").X.translation() - d.camera.translation()).norm(), 3e-3);
+  EXPECT_LT((frame(result, "instrument").X.translation() - d.board.translation()).norm(), 5e-3);
+}
+
 TEST(SamplesProblem, IntervalsHoldTheTruth) {
   const TemporaryFolder folder;
   int inside = 0, all = 0;

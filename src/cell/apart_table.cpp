@@ -23,7 +23,7 @@ constexpr double rounding = 1e-6;
 
 }  // namespace
 
-ApartTable::ApartTable(std::vector<Axis> axes, std::vector<double> middle)
+ApartTable::ApartTable(std::vector<Axis> axes, std::vector<double> middle, double room)
     : axes_(std::move(axes)), middle_(std::move(middle)) {
   for (Axis& axis : axes_) {
     // One turn is as good as two.
@@ -39,6 +39,7 @@ ApartTable::ApartTable(std::vector<Axis> axes, std::vector<double> middle)
       cells *= level.counts.back();
     }
     if (cells > most_cells) break;
+    if (reach / 2 > room) continue;
     level.spare = std::make_unique<std::atomic<float>[]>(std::size_t(cells));
     for (std::size_t i = 0; i < std::size_t(cells); ++i) level.spare[i].store(unknown, std::memory_order_relaxed);
     levels_.push_back(std::move(level));

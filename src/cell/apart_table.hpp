@@ -26,7 +26,8 @@ class ApartTable {
   };
 
   /// @param middle  a configuration, whose other coordinates the pair does not depend on
-  ApartTable(std::vector<Axis> axes, std::vector<double> middle);
+  /// @param room    m beyond its clearance that the pair hardly ever has: cells that would need more are left out
+  ApartTable(std::vector<Axis> axes, std::vector<double> middle, double room);
 
   /// A lower bound (m) that is above `enough`, or −1: outside the table, or too near for its cells to tell.
   /// @param pair  the one of this table, of `scene`

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -13,6 +14,23 @@
 
 namespace posewright {
 namespace {
+
+/// Adds what one joint moves.
+/// @param X    frame of the joint after its motion
+/// @param way  change of its coordinate, less than 0 on the way to frame a
+void add_joint(BodyFrames::Rate& rate, const ChainJoint& joint, const Eigen::Isometry3d& X, double way) {
+  const double change = joint.multiplier * way;
+  const Eigen::Vector3d axis = change * (X.linear() * joint.axis);
+  if (joint.prismatic) {
+    rate.v += axis;
+    rate.least_turn = 0;
+    return;
+  }
+  rate.omega += axis;
+  rate.v += X.translation().cross(axis);
+  rate.turn += std::abs(change);
+  rate.least_turn = std::min(rate.least_turn, std::abs(change));
+}
 
 /// Serial arm: frame k is that of the k-th joint after its motion.
 class ChainFrames : public BodyFrames {
@@ -63,6 +81,17 @@ class ChainFrames : public BodyFrames {
       from_origin += pushed_by(k);
     }
     return bound;
+  }
+
+  std::optional<Rate> rate(int pose, int a, int b, std::span<const double> change,
+                           std::span<const Eigen::Isometry3d> X) const override {
+    Rate result;
+    result.least_turn = std::numeric_limits<double>::infinity();
+    for (int k = std::min(a, b) + 1; k <= std::max(a, b); ++k) {
+      const double way = change[place(pose, std::size_t(k - 1))];
+      add_joint(result, chain_.joints[std::size_t(k - 1)], X[std::size_t(k)], a < b ? way : -way);
+    }
+    return result;
   }
 
   double period(std::size_t coordinate) const override {
@@ -177,6 +206,22 @@ class TreeFrames : public BodyFrames {
       from_origin += pushed_by(*k);
     }
     return bound;
+  }
+
+  std::optional<Rate> rate(int, int a, int b, std::span<const double> change,
+                           std::span<const Eigen::Isometry3d> X) const override {
+    Rate result;
+    result.least_turn = std::numeric_limits<double>::infinity();
+    const std::vector<int> up = way_to(b), down = way_to(a);
+    const auto add = [&](const std::vector<int>& way, const std::vector<int>& other, double sense) {
+      for (const int k : way) {
+        if (std::ranges::count(other, k) > 0) break;
+        add_joint(result, joint(k), X[std::size_t(k)], sense * change[place(std::size_t(k - 1))]);
+      }
+    };
+    add(up, down, 1);
+    add(down, up, -1);
+    return result;
   }
 
   double period(std::size_t coordinate) const override {

@@ -46,6 +46,20 @@ class BodyFrames {
   /// @param radius       m, largest distance of these points from the origin of b
   /// @param axis_radius  m, the same from the line through the origin along axis(b); not read if b < a
   virtual Eigen::VectorXd travel(int pose, int a, int b, double radius, double axis_radius) const = 0;
+  /// How a frame moves relative to another one along a straight motion.
+  struct Rate {
+    Eigen::Vector3d v = Eigen::Vector3d::Zero(), omega = Eigen::Vector3d::Zero();  ///< p moves by v + omega × p
+    double turn = 0.0;        ///< rad: angles of all joints between the two
+    double least_turn = 0.0;  ///< rad: the smallest of them; 0 with a prismatic joint
+  };
+  /// Rate of frame b relative to frame a, axes of the measurement frame, while a configuration changes by `change`.
+  /// Nothing where only travel() is known.
+  /// @param X  all frames at the state in question
+  virtual std::optional<Rate> rate(int pose, int a, int b, std::span<const double> change,
+                                   std::span<const Eigen::Isometry3d> X) const {
+    (void)pose, (void)a, (void)b, (void)change, (void)X;
+    return std::nullopt;
+  }
   /// After which change of a coordinate all frames are where they were, rad; 0: none.
   virtual double period(std::size_t) const { return 0.0; }
   /// Frames from which on a parameter of that name acts: k means k and what it carries; 0: the base, count(): none.

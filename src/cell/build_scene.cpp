@@ -198,6 +198,7 @@ class SceneBuilder {
         const double least = std::min(std::max(least_reduced, pair.least), 0.8 * largest[p]);
         const double kept = std::min(pair.asked, std::max(0.5 * largest[p], least));
         pair.clearance = kept + (kept > motion_resolution ? motion_resolution : 0.0);
+        pair.room = std::max(0.0, largest[p] - pair.clearance);
         const auto at = reduced.emplace(names, kept).first;
         at->second = std::min(at->second, kept);
       }
@@ -258,7 +259,7 @@ class SceneBuilder {
         if (fits)
           axes.push_back({k, c.lower - beyond_limits, c.upper + beyond_limits, scene_.frames->period(k), travel});
       }
-      if (fits && !axes.empty()) pair.table = std::make_shared<ApartTable>(std::move(axes), middle);
+      if (fits && !axes.empty()) pair.table = std::make_shared<ApartTable>(std::move(axes), middle, pair.room);
     }
   }
 

@@ -25,8 +25,9 @@ inline constexpr double motion_resolution = 0.5e-3;
 /// they save.
 inline constexpr double look_ahead = 0.08;
 
-/// Hulls of meshes that leave less than this are too coarse: the meshes themselves are asked, m.
-inline constexpr double near_enough = 0.002;
+/// Hulls of meshes that leave less than this are too coarse: the meshes themselves are asked, m. Where hulls stay on
+/// either side of a plane, little is enough.
+inline constexpr double near_enough = 0.0005;
 
 /// Largest error of a distance between meshes, hulls and shapes, m.
 inline constexpr double certain = 1e-4;
@@ -50,7 +51,8 @@ struct BodyPair {
   double asked = 0.0;                   ///< m, without margins
   double least = 0.0;                   ///< m, by which the tolerances may move the two relative to each other
   std::vector<Eigen::VectorXd> travel;  ///< per pose of a configuration: see BodyFrames::travel
-  bool never_near = false;              ///< keeps its clearance wherever the robot may stand: need not be looked at
+  double room = std::numeric_limits<double>::infinity();  ///< m beyond the clearance that the two hardly ever have
+  bool never_near = false;  ///< keeps its clearance wherever the robot may stand: need not be looked at
   std::shared_ptr<const ApartTable> table{};  ///< of a pair that few coordinates move; null: none
 };
 
@@ -72,12 +74,17 @@ struct EnoughSpare {
   double of_surfaces;  ///< most that is found of meshes
 };
 
+/// Asked with a direction from body a to b across what is between their hulls; true: the bodies need not be asked.
+using AskAcross = std::function<bool(const Eigen::Vector3d& towards_b)>;
+
 /// Lower bound of a pair's distance beyond its clearance: exact where it is negative, so that the sign is the verdict.
+/// @param across  asked where the hulls keep their clearance; may be empty
 double spare_of(const Scene& scene, const BodyPair& pair, const Eigen::Isometry3d& X_a, const Eigen::Isometry3d& X_b,
-                const EnoughSpare& enough);
+                const EnoughSpare& enough, const AskAcross& across = {});
 
 /// True if pairs keep their clearance all the way on a straight motion of one pose. Where a pair is d apart, it cannot
-/// come too near before it has moved by what d has to spare, on either side; what is left between two states is halved.
+/// come too near before it has moved by what d has to spare, on either side. Nor can it as long as its hulls stay on
+/// either side of a plane (stay_apart()). What is left between two states is halved.
 /// @param most_looks  at pairs between the ends before the answer is no
 bool keep_apart(const Scene& scene, std::span<const BodyPair> pairs, int pose, std::span<const double> from,
                 std::span<const double> to, long most_looks = std::numeric_limits<long>::max());

@@ -36,9 +36,10 @@ constexpr double most_short = 1.6;
 // How far a corner may be above a triangle of a mesh that counts as convex, m.
 constexpr double flat = 1e-7;
 
+/// @param towards_b  see clearance_of_faces()
 double fcl_distance(const Geometry& a, const Eigen::Isometry3d& X_a, const Geometry& b, const Eigen::Isometry3d& X_b,
-                    double cap) {
-  fcl::DistanceRequestd request(false);
+                    double cap, Eigen::Vector3d* towards_b = nullptr) {
+  fcl::DistanceRequestd request(towards_b != nullptr);
   // The default tolerance overestimates distances of curved shapes by up to millimetres.
   request.gjk_solver_type = fcl::GST_LIBCCD;
   request.distance_tolerance = 1e-9;
@@ -52,6 +53,8 @@ double fcl_distance(const Geometry& a, const Eigen::Isometry3d& X_a, const Geome
   // What is farther than `cap` is never looked at.
   fcl::DistanceResultd result(cap);
   fcl::distance(&a, X_a, &b, X_b, request, result);
+  if (towards_b != nullptr && result.min_distance > 0 && result.min_distance < cap)
+    *towards_b = result.nearest_points[1] - result.nearest_points[0];
   return std::clamp(result.min_distance, 0.0, cap);
 }
 
@@ -179,6 +182,7 @@ class CylinderSolid : public FclSolid {
     put_box_around();
   }
   bool holds(const Eigen::Vector3d& p) const override { return p.head<2>().norm() <= r_ && std::abs(p.z()) <= half_; }
+  double support(const Eigen::Vector3d& d) const override { return r_ * d.head<2>().norm() + half_ * std::abs(d.z()); }
 
  private:
   double r_, half_;
@@ -194,6 +198,7 @@ class SphereSolid : public FclSolid {
     put_box_around();
   }
   bool holds(const Eigen::Vector3d& p) const override { return p.norm() <= radius_; }
+  double support(const Eigen::Vector3d& d) const override { return radius_ * d.norm(); }
 };
 
 /// Half spaces have distances in closed form, and FCL none to meshes.
@@ -412,17 +417,18 @@ bool within(const Solid& a, const Eigen::Isometry3d& X_a, const Solid& b, const 
 /// Distance of two solids whose boxes and hulls have been asked already; see clearance_of_faces().
 /// @param clear  none: the distance itself
 double distance_of_faces(const Solid& a, const Eigen::Isometry3d& X_a, const Solid& b, const Eigen::Isometry3d& X_b,
-                         std::optional<double> clear, double cap) {
+                         std::optional<double> clear, double cap, Eigen::Vector3d* towards_b = nullptr) {
   const auto* plane_a = dynamic_cast<const HalfSpaceSolid*>(&a);
   const auto* plane_b = dynamic_cast<const HalfSpaceSolid*>(&b);
   if (plane_a != nullptr && plane_b != nullptr) throw std::invalid_argument("two half spaces have no distance");
+  if (plane_a != nullptr && towards_b != nullptr) *towards_b = X_a.linear() * plane_a->normal();
   if (plane_a != nullptr) return std::clamp(above(*plane_a, X_a, b, X_b), 0.0, cap);
   if (plane_b != nullptr) return std::clamp(above(*plane_b, X_b, a, X_a), 0.0, cap);
   const auto [one, other] = geometries(static_cast<const FclSolid&>(a), static_cast<const FclSolid&>(b));
   const bool surfaces = one->getObjectType() == fcl::OT_BVH && other->getObjectType() == fcl::OT_BVH;
   const double found = clear && surfaces ? fcl_clearance(static_cast<const Mesh&>(*one), X_a,
                                                          static_cast<const Mesh&>(*other), X_b, *clear, cap)
-                                         : fcl_distance(*one, X_a, *other, X_b, cap);
+                                         : fcl_distance(*one, X_a, *other, X_b, cap, towards_b);
   if (found <= 0) return 0.0;
   // Surfaces that do not meet: one may still be in the other.
   return within(a, X_a, b, X_b) || within(b, X_b, a, X_a) ? 0.0 : found;
@@ -437,6 +443,12 @@ std::shared_ptr<const Solid> make_solid(const ShapeSpec& shape, const TriangleMe
   if (const auto* plane = std::get_if<HalfSpaceShape>(&shape)) return std::make_shared<HalfSpaceSolid>(*plane);
   if (mesh == nullptr) throw std::invalid_argument("a mesh shape needs its triangles");
   return std::make_shared<MeshSolid>(*mesh);
+}
+
+double Solid::support(const Eigen::Vector3d& direction) const {
+  double most = -std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector3d& corner : corners_) most = std::max(most, direction.dot(corner));
+  return most;
 }
 
 double distance_at_least(const Solid& a, const Eigen::Isometry3d& X_a, const Solid& b, const Eigen::Isometry3d& X_b) {
@@ -455,12 +467,12 @@ double distance_at_least(const Solid& a, const Eigen::Isometry3d& X_a, const Sol
 }
 
 double distance_of_hulls(const Solid& a, const Eigen::Isometry3d& X_a, const Solid& b, const Eigen::Isometry3d& X_b,
-                         double cap) {
+                         double cap, Eigen::Vector3d* towards_b) {
   if (!std::isfinite(a.radius()) || !std::isfinite(b.radius()))
-    return distance_of_faces(a, X_a, b, X_b, std::nullopt, cap);
+    return distance_of_faces(a, X_a, b, X_b, std::nullopt, cap, towards_b);
   const Geometry *first = static_cast<const FclSolid&>(a).hull(), *second = static_cast<const FclSolid&>(b).hull();
   if (first == nullptr || second == nullptr) return 0.0;
-  return std::max(0.0, fcl_distance(*first, X_a, *second, X_b, cap + hull_tolerance) - hull_tolerance);
+  return std::max(0.0, fcl_distance(*first, X_a, *second, X_b, cap + hull_tolerance, towards_b) - hull_tolerance);
 }
 
 bool are_convex(const Solid& a, const Solid& b) {
@@ -478,8 +490,8 @@ double distance(const Solid& a, const Eigen::Isometry3d& X_a, const Solid& b, co
 }
 
 double clearance_of_faces(const Solid& a, const Eigen::Isometry3d& X_a, const Solid& b, const Eigen::Isometry3d& X_b,
-                          double clear, double cap) {
-  return distance_of_faces(a, X_a, b, X_b, clear, cap);
+                          double clear, double cap, Eigen::Vector3d* towards_b) {
+  return distance_of_faces(a, X_a, b, X_b, clear, cap, towards_b);
 }
 
 std::optional<std::array<Eigen::Vector3d, 2>> nearest_points(const Solid& a, const Eigen::Isometry3d& X_a,

@@ -368,16 +368,20 @@ bool ClosedChain::enclose_residual(std::span<const TaylorModel> q, std::span<con
   chain.loops.actuator.setZero(d, Eigen::Index(actuators_.size()));
   chain.loops.value.setZero(d);
   if (!do_enclose(q, own_part(correction), own, chain)) return false;
+  out.allowed = std::move(chain.allowed);
+  // Whoever selects nothing asks for the limits alone.
+  if (selected.empty()) return true;
   out.actuator = std::move(chain.loops.actuator);
   out.parameter = std::move(chain.loops.parameter);
-  out.allowed = std::move(chain.allowed);
 
   Frame<double> base_frame = frame_of(X_MeasureBase_), tool_frame;
   const DisplacementAxes base = displace(base_frame, correction.empty() ? nullptr : correction.data());
   const std::size_t first_tool = std::size_t(first_own() + own_count_);
   const DisplacementAxes tool =
       displace(tool_frame, correction.size() > first_tool ? correction.data() + first_tool : nullptr);
-  const EnclosedMatrix along_base = in_frame(chain.loops.platform, constant_frame(isometry_of(base_frame).inverse()));
+  EnclosedMatrix along_base;
+  if (std::any_of(selected.begin(), selected.end(), [](int index) { return index < 6; }))
+    along_base = in_frame(chain.loops.platform, constant_frame(isometry_of(base_frame).inverse()));
   const EnclosedMatrix along_platform = in_frame(chain.loops.platform, chain.X_BasePlatform);
   out.platform = in_frame(along_platform, constant_frame(isometry_of(tool_frame)));
   for (Eigen::Index c = 0; c < columns; ++c) {

@@ -427,7 +427,7 @@ bool SixLegs::do_enclose(std::span<const TaylorModel> q, std::span<const double>
     out.allowed.push_back(out.actuators[i] - TaylorModel(actuators_[i].lower));
     out.allowed.push_back(TaylorModel(actuators_[i].upper) - out.actuators[i]);
   }
-  loops_at<TaylorModel>(platform, out.actuators, own, selected, out.loops);
+  if (!selected.empty()) loops_at<TaylorModel>(platform, out.actuators, own, selected, out.loops);
   return true;
 }
 

@@ -106,9 +106,9 @@ double BernsteinTensor::largest() const {
   return top + beyond_ + epsilon * (std::abs(top) + beyond_);
 }
 
-int BernsteinTensor::most_varied() const {
-  int most = 0;
-  double largest = -1;
+std::array<int, 2> BernsteinTensor::most_varied() const {
+  std::array<int, 2> most{0, -1};
+  std::array<double, 2> largest{-1, -1};
   std::size_t stride = 1;
   for (std::size_t a = degrees_.size(); a-- > 0;) {
     const auto terms = std::size_t(degrees_[a] + 1);
@@ -121,9 +121,13 @@ int BernsteinTensor::most_varied() const {
         variation = std::max(variation, sum);
       }
     stride *= terms;
-    if (variation > largest) {
-      largest = variation;
-      most = int(a);
+    if (variation > largest[0]) {
+      if (largest[0] >= 0) most[1] = most[0];
+      largest = {variation, largest[0]};
+      most[0] = int(a);
+    } else if (variation > largest[1]) {
+      largest[1] = variation;
+      most[1] = int(a);
     }
   }
   return most;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "posewright/support/taylor_model.hpp"
@@ -14,8 +15,8 @@ class BernsteinTensor {
   void take(const TaylorModel& f, double small);
   /// Upper bound of f in the box, with its radius, the remainder and all rounding.
   double largest() const;
-  /// Variable along which the coefficients vary most.
-  int most_varied() const;
+  /// The two variables along which the coefficients vary most; the second is −1 if there is but one.
+  std::array<int, 2> most_varied() const;
 
  private:
   void choose_degrees(const TaylorModel& f, double small);

@@ -15,6 +15,15 @@ namespace {
 // Boxes of one round; more threads than this would have nothing to do.
 constexpr std::size_t boxes_a_round = 16;
 
+/// Two halves of each box from `first` on.
+void halve(std::vector<SearchBox>& boxes, std::size_t first, std::size_t axis) {
+  for (std::size_t i = first, end = boxes.size(); i < end; ++i) {
+    const double middle = 0.5 * (boxes[i].lower[axis] + boxes[i].upper[axis]);
+    boxes.push_back(boxes[i]);
+    boxes[i].upper[axis] = boxes.back().lower[axis] = middle;
+  }
+}
+
 /// Verdict of a judge on a box, with its bounds: each field, in the order of the bytes.
 template <class Box, class Found, class Visit>
 void each_field(Box& box, Found& found, const Visit& visit) {
@@ -22,6 +31,7 @@ void each_field(Box& box, Found& found, const Visit& visit) {
   visit(box.upper);
   visit(box.bound);
   visit(box.longest);
+  visit(box.also);
   visit(found.value);
   visit(found.where);
   visit(found.function);
@@ -83,15 +93,12 @@ BoxSearchResult largest_value(std::vector<SearchBox> round, const std::function<
     round.clear();
     result.complete = open.top().bound <= enough_now();
     if (result.complete || result.stopped || result.boxes >= options.most_boxes) break;
-    for (std::size_t i = 0; i < boxes_a_round && !open.empty() && open.top().bound > enough_now(); ++i) {
-      const SearchBox box = open.top();
+    while (round.size() < 2 * boxes_a_round && !open.empty() && open.top().bound > enough_now()) {
+      const std::size_t first = round.size();
+      round.push_back(open.top());
       open.pop();
-      const auto a = std::size_t(box.longest);
-      const double middle = 0.5 * (box.lower[a] + box.upper[a]);
-      round.push_back(box);
-      round.back().upper[a] = middle;
-      round.push_back(box);
-      round.back().lower[a] = middle;
+      halve(round, first, std::size_t(round[first].longest));
+      if (round[first].also >= 0) halve(round, first, std::size_t(round[first].also));
     }
   }
   result.largest = result.found.value;

@@ -24,6 +24,8 @@ constexpr double small_share = 2e-5;
 // λ: sweeps of Newton's method on Σ √(slope² + s²), for ever smaller s.
 constexpr int smoothings = 6, sweeps = 12;
 constexpr double first_smoothing = 0.1, finer = 0.2;
+// A box whose bound exceeds what is enough by this share is halved along two axes before its parts are looked at.
+constexpr double far_above = 0.1;
 // Boxes that are looked into for what searches miss: a second or two.
 constexpr long boxes_of_a_look = 300;
 
@@ -107,6 +109,7 @@ class TaylorJudge : public BoxJudge {
   void judge(SearchBox& box, double enough, LargestFound& found) override {
     const double before = box.bound;
     box.bound = -infinity;
+    box.also = -1;
     for (int cuts = 0;; ++cuts) {
       put(box);
       allowed_.clear();
@@ -127,7 +130,10 @@ class TaylorJudge : public BoxJudge {
       if (lambda[i] > 0) d.add(lambda[i], *limits[i]);
     tensor_.take(d, std::isfinite(enough) ? small_share * std::abs(enough) : 0.0);
     box.bound = std::min(before, tensor_.largest());
-    box.longest = tensor_.most_varied();
+    const auto [axis, second] = tensor_.most_varied();
+    box.longest = axis;
+    // Halves of a box that is far above would be halved again.
+    box.also = box.bound > enough + far_above * std::abs(enough) ? second : -1;
     show(box);
   }
 

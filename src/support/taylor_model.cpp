@@ -43,6 +43,16 @@ ConstCoefficients array(std::span<const double> c) { return {c.data(), Eigen::In
 
 using Norms = std::array<double, Monomials::most_degree + 1>;
 
+/// Four sums side by side, in this order on every processor.
+double sum_of_sizes(std::span<const double> c) {
+  std::array<double, 4> sums{};
+  std::size_t i = 0;
+  for (; i + 4 <= c.size(); i += 4)
+    for (std::size_t k = 0; k < 4; ++k) sums[k] += std::abs(c[i + k]);
+  for (std::size_t k = 0; i < c.size(); ++i, ++k) sums[k] += std::abs(c[i]);
+  return (sums[0] + sums[1]) + (sums[2] + sums[3]);
+}
+
 /// Σ |coefficients| of each degree, rounded down at worst by what `up` makes good.
 Norms norms_of(const TaylorModel& f) {
   Norms norms{};
@@ -51,10 +61,17 @@ Norms norms_of(const TaylorModel& f) {
   std::size_t first = 0;
   for (int d = 0; first < c.size(); ++d) {
     const std::size_t end = std::min(c.size(), f.monomials()->count_to(d));
-    norms[std::size_t(d)] = array(c.subspan(first, end - first)).abs().sum();
+    norms[std::size_t(d)] = sum_of_sizes(c.subspan(first, end - first));
     first = end;
   }
   return norms;
+}
+
+/// Coefficients up to degree 2 that are not zero: nearly all that a factor has to multiply.
+std::size_t large_terms(const TaylorModel& f) {
+  const std::span<const double> c = f.coefficients();
+  const auto leading = c.first(std::min(c.size(), f.monomials()->count_to(std::min(2, f.monomials()->degree()))));
+  return std::size_t(std::count_if(leading.begin(), leading.end(), [](double x) { return x != 0; }));
 }
 
 double clean(double radius) { return radius < infinity ? radius : infinity; }
@@ -190,19 +207,26 @@ TaylorModel operator*(const TaylorModel& a, const TaylorModel& b) {
         clean((std::abs(a.coefficients_[0]) * b.radius_ + a.radius_ * b_size + epsilon * size + underflow) * up);
     return product;
   }
+  // A rotation's entries are functions of three variables: most of their coefficients are zero.
+  if (a.coefficients_.size() == b.coefficients_.size() && large_terms(b) < large_terms(a)) return b * a;
   const Monomials& m = *a.monomials_;
   const Norms norms_a = norms_of(a), norms_b = norms_of(b);
   int degree_a = m.degree_of(a.coefficients_.size() - 1), degree_b = m.degree_of(b.coefficients_.size() - 1);
   TaylorModel product;
   product.monomials_ = &m;
   product.coefficients_.assign(m.count_to(std::min(m.degree(), degree_a + degree_b)), 0.0);
-  double* out = product.coefficients_.data();
-  for (std::size_t i = 0; i < a.coefficients_.size(); ++i) {
+  // Products with the constants stand side by side.
+  array(product.coefficients_).head(Eigen::Index(b.coefficients_.size())) = a.constant() * array(b.coefficients());
+  array(product.coefficients_).segment(1, Eigen::Index(a.coefficients_.size()) - 1) +=
+      b.constant() * array(a.coefficients().subspan(1));
+  double* __restrict out = product.coefficients_.data();
+  const double* __restrict from = b.coefficients_.data();
+  for (std::size_t i = 1; i < std::min(a.coefficients_.size(), m.count_to(m.degree() - 1)); ++i) {
     const double x = a.coefficients_[i];
     if (x == 0) continue;
     const std::size_t terms = std::min(b.coefficients_.size(), m.count_to(m.degree() - m.degree_of(i)));
-    const std::uint32_t* to = m.products(i);
-    for (std::size_t j = 0; j < terms; ++j) out[to[j]] += x * b.coefficients_[j];
+    const std::uint32_t* __restrict to = m.products(i);
+    for (std::size_t j = 1; j < terms; ++j) out[to[j]] += x * from[j];
   }
   double size_a = 0, size_b = 0, cut = 0;
   for (int i = 0; i <= degree_a; ++i) {

@@ -13,6 +13,8 @@ namespace posewright {
 namespace {
 
 constexpr std::size_t batch = 2048;
+// Of a batch so many are judged at once, and none of the rest when there are enough.
+constexpr std::size_t judged_at_once = 256;
 // Halvings of the way from a feasible point to an infeasible one: 2⁻³⁰ of the way is finer than any controller's step.
 constexpr int bisections = 30;
 // Where each step asks for collisions: 2⁻¹³ of the way.
@@ -126,14 +128,18 @@ void Sampler::draw(std::size_t wanted, const Monitor& monitor, std::size_t draws
     for (std::size_t i = 0; i < batch; ++i) generate(first + i, std::span(points).subspan(i * d, d));
     std::atomic<bool> cut = false;
     const auto begin = Monitor::Clock::now();
-    parallel_for(batch / 16, thread_count(options_.threads), [&](std::size_t chunk, int) {
-      if (monitor.should_stop() && Monitor::Clock::now() - begin > patience) cut = true;
-      for (std::size_t i = 16 * chunk; i < 16 * (chunk + 1) && !cut; ++i)
-        verdict[i] = judge(first + i, std::span(points).subspan(i * d, d));
-    });
-    // A part of a batch would depend on the number of threads.
-    if (cut) break;
+    const auto judge_from = [&](std::size_t part) {
+      constexpr std::size_t chunk = 4;
+      parallel_for(judged_at_once / chunk, thread_count(options_.threads), [&](std::size_t c, int) {
+        if (monitor.should_stop() && Monitor::Clock::now() - begin > patience) cut = true;
+        for (std::size_t i = part + chunk * c; i < part + chunk * (c + 1) && !cut; ++i)
+          verdict[i] = judge(first + i, std::span(points).subspan(i * d, d));
+      });
+      return !cut;
+    };
     for (std::size_t i = 0; i < batch && result_.count() < target; ++i) {
+      // A part that was not finished would depend on the number of threads.
+      if (i % judged_at_once == 0 && !judge_from(i)) return;
       ++result_.drawn;
       const std::span<const double> q = std::span(points).subspan(i * d, d);
       if (verdict[i] >= 0) ++rejected_[std::size_t(verdict[i])];

@@ -52,6 +52,81 @@ double asked(const Collision& collision, const std::string& a, const std::string
   return -1;
 }
 
+/// Where p, fixed in frame b at one state, is at another one for whoever moves with frame a.
+Eigen::Vector3d seen_from(const BodyFrames& frames, int a, int b, const Eigen::Vector3d& p,
+                          const std::vector<double>& q, const std::vector<double>& later) {
+  std::vector<Eigen::Isometry3d> X(std::size_t(frames.count())), Y(X.size());
+  frames.poses(q, 0, X);
+  frames.poses(later, 0, Y);
+  const auto i = std::size_t(a), j = std::size_t(b);
+  return X[i] * Y[i].inverse() * Y[j] * X[j].inverse() * p;
+}
+
+TEST(BodyFrames, RateIsThatOfDifferencesBetweenStates) {
+  const auto cell = cell_with("clearance: 10 mm");
+  const BodyFrames& frames = *cell->collision->scene().frames;
+  std::vector<Eigen::Isometry3d> X(std::size_t(frames.count()));
+  Random random(11, 0);
+  for (int trial = 0; trial < 20; ++trial) {
+    std::vector<double> q, change, before, after;
+    constexpr double step = 1e-5;
+    for (int k = 0; k < 3; ++k) {
+      q.push_back(random.uniform(-2, 2));
+      change.push_back(random.uniform(-1, 1));
+      before.push_back(q.back() - step * change.back());
+      after.push_back(q.back() + step * change.back());
+    }
+    frames.poses(q, 0, X);
+    for (int a = 0; a < 4; ++a)
+      for (int b = 0; b < 4; ++b) {
+        const auto rate = frames.rate(0, a, b, change, X);
+        ASSERT_TRUE(rate);
+        const Eigen::Vector3d p(random.normal(), random.normal(), random.normal());
+        const Eigen::Vector3d found =
+            (seen_from(frames, a, b, p, q, after) - seen_from(frames, a, b, p, q, before)) / (2 * step);
+        EXPECT_LT((rate->v + rate->omega.cross(p) - found).norm(), 1e-8) << a << " " << b;
+        double turn = 0;
+        for (int k = std::min(a, b); k < std::max(a, b); ++k) turn += std::abs(change[std::size_t(k)]);
+        EXPECT_NEAR(rate->turn, turn, 1e-12);
+      }
+  }
+}
+
+TEST(Motion, OfThreeJointsThatIsFreeKeepsTheClearanceAtEveryState) {
+  const auto cell = cell_with(
+      "clearance: 30 mm, tool: [{name: hand, box: [0.2, 0.1, 0.1]}], obstacles: [{name: post, cylinder: {radius: 0.2, "
+      "length: 1}, at: [1.2, 0.6, 0]}, {name: ball, sphere: 0.1, at: [0.6, -0.8, 0.9]}]");
+  const Scene& scene = cell->collision->scene();
+  std::vector<Eigen::Isometry3d> X(std::size_t(scene.frames->count()));
+  Random random(12, 0);
+  int free = 0, blocked = 0;
+  for (int i = 0; i < 200; ++i) {
+    std::vector<double> from, to, q(3);
+    for (const double most : {3.0, 2.9, 0.1}) {
+      from.push_back(random.uniform(-most, most));
+      to.push_back(random.uniform(-most, most));
+    }
+    const bool is_free = cell->collision->motion_is_free(from, to);
+    (is_free ? free : blocked)++;
+    double least = 1;
+    for (int k = 0; k <= 1000; ++k) {
+      for (std::size_t j = 0; j < 3; ++j) q[j] = from[j] + k * (to[j] - from[j]) / 1000;
+      scene.frames->poses(q, 0, X);
+      for (const BodyPair& pair : scene.pairs) {
+        const Body &one = scene.bodies[std::size_t(pair.a)], &other = scene.bodies[std::size_t(pair.b)];
+        const double apart = distance(*one.solid, X[std::size_t(one.frame)] * one.X_FrameBody, *other.solid,
+                                      X[std::size_t(other.frame)] * other.X_FrameBody, pair.clearance + 0.01);
+        least = std::min(least, apart - pair.clearance);
+      }
+    }
+    // A motion that passes by less than what motions are resolved to may be either.
+    if (is_free) ASSERT_GE(least, -2 * motion_resolution) << i;
+    else ASSERT_LT(least, 2e-3) << i;
+  }
+  EXPECT_GT(free, 20);
+  EXPECT_GT(blocked, 20);
+}
+
 TEST(Clearance, IsKeptByLinksAndToolFromEachOtherAsFromObstacles) {
   const auto cell = cell_with(std::string("clearance: 40 mm, ") + hand);
   EXPECT_NEAR(asked(*cell->collision, "hand", "base"), 0.04, 1e-12);

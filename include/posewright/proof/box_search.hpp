@@ -15,6 +15,7 @@ struct SearchBox {
   int function = 0;  ///< of several over boxes of their own
   double bound = std::numeric_limits<double>::infinity();
   int longest = 0;  ///< axis along which it is halved
+  int also = -1;    ///< another one, where one is certainly not enough; −1: none
   bool operator<(const SearchBox& other) const { return bound < other.bound; }
 };
 

@@ -8,6 +8,7 @@ import math
 import pathlib
 import re
 import shutil
+import subprocess
 import sys
 import tempfile
 
@@ -49,6 +50,26 @@ def near(a, b):
         return False
 
 
+def memory_that_ends(folder):
+    """One sentence and nothing half written where memory ends: in a search, beyond 32 bits, before the program begins."""
+    script = folder / "node_modules/posewright/posewright.mjs"
+    before = sorted(folder.iterdir())
+    header = b"{'descr': '<f4', 'fortran_order': False, 'shape': (67200000, 1, 1), }".ljust(117) + b"\n"
+    with open(folder / "wide.npy", "wb") as file:  # 268 MB that take no place on the disk; its blocks need 4.3 GB, 6 MB modulo 2^32
+        file.write(b"\x93NUMPY\x01\x00" + len(header).to_bytes(2, "little") + header)
+        file.truncate(10 + len(header) + 4 * 67200000)
+    plan = ("plan", "problem.yaml", "--candidates", "60000", "--proof-time", "0", "-o", "lost.json", "--poses-csv", "lost.csv")
+    in_words = "not enough memory; ask for fewer candidates"
+    for flags, words, sentence in (
+            (("--wasm-max-mem-pages=1500",), plan, in_words), ((), ("select", "wide.npy", "--poses", "5", "-o", "lost.json"), in_words),
+            (("--wasm-max-mem-pages=100",), plan, "not enough memory (WebAssembly has 4 GB at most); ask for fewer candidates")):
+        done = subprocess.run(["node", *flags, script, *words], cwd=folder, capture_output=True, text=True)
+        assert (done.returncode, done.stdout) == (1, "") and "    at " not in done.stderr, (words, done)
+        assert done.stderr.splitlines()[-1] == f"posewright: {sentence}", (words, done)
+    (folder / "wide.npy").unlink()
+    assert sorted(folder.iterdir()) == before
+
+
 def poses(folder, name):
     return json.loads((folder / name).read_text())["poses"]
 
@@ -74,6 +95,7 @@ with tempfile.TemporaryDirectory() as empty, tempfile.TemporaryDirectory() as ot
     assert "PTP" in (here / "CALPOSES.src").read_text()
     assert (here / "calibrated.yaml").read_text().startswith("posewright_parameters: 1\n")
     assert len(json.loads((here / "plan.json").read_text())["poses"]) == 10
+    memory_that_ends(here)
     if native:
         for step, mine, theirs in list(zip(STEPS, said, flow(there, native)))[:4]:
             assert alike(mine, theirs), f"{step[0]}: node\n{mine}\nnative\n{theirs}"

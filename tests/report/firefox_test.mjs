@@ -76,7 +76,7 @@ const page = await context.newPage();
 page.setDefaultTimeout(240_000);
 const complaints = [];
 // A screenshot puts a style of its own into the page.
-const complain = (text) => !(values.screenshots && text.startsWith('Content-Security-Policy')) && complaints.push(text);
+const complain = (text) => !(values.screenshots && /^Content-Security-Policy|blocked an inline style/.test(text)) && complaints.push(text);
 page.on('console', (m) => m.type() === 'error' && complain(m.text()));
 page.on('pageerror', (error) => complain(error.message ?? String(error)));
 await page.goto(`file://${file}`);

@@ -56,9 +56,9 @@ assert.equal(messagesOf(['posewright: my cell.yaml:4: no'], 'a/my cell.yaml')[0]
 
 // Loose meshes go where the URDF names them.
 const bytes = (text) => new TextEncoder().encode(text);
-const files = new Map([['r.urdf', bytes('<robot name="r"><mesh filename="package://p/m/a.stl"/><mesh filename="b.stl"/></robot>')], ['a.stl', bytes('solid')]]);
+const files = new Map([['r.urdf', bytes('<robot name="r"><mesh filename="package://p/m/a.stl"/><mesh filename="b.stl"/><visual><mesh filename="b.stl"/></visual><visual name="x"><mesh filename="c.dae"/></visual></robot>')], ['a.stl', bytes('solid')]]);
 assert.equal(robotAmong(files), 'r.urdf');
-assert.deepEqual(placeMeshes(files, 'r.urdf'), ['b.stl']);
+assert.deepEqual(placeMeshes(files, 'r.urdf'), { missing: ['b.stl'], looks: ['c.dae'] });
 assert.ok(files.has('p/m/a.stl'));
 
 // Problems and plans are known by what is in them; of several problems that of the usual name comes first.

@@ -46,22 +46,26 @@ function placeOf(name, robot) {
   return name.startsWith('/') || /^\w+:/.test(name) ? undefined : joined(folderOf(robot), name);
 }
 
+/** Names of meshes in a URDF. @param {string} text */
+const meshNames = (text) => new Set([...text.matchAll(/<mesh\b[^>]*\bfilename\s*=\s*["']([^"']+)["']/g)].map((m) => m[1]));
+
 /**
- * Puts loose meshes where the URDF names them, by the end of their path, and lists those that are not there.
- * @param {Map<string, Uint8Array>} files changed @param {string} robot @returns {string[]} names of missing meshes
+ * Puts loose meshes where the URDF names them, by the end of their path. Makers leave meshes for the looks out, or give them as
+ * Collada: the picture does without, and no check needs them.
+ * @param {Map<string, Uint8Array>} files changed @param {string} robot
+ * @returns {{missing: string[], looks: string[]}} names of meshes that are not there: for checks, and for looks alone
  */
 export function placeMeshes(files, robot) {
   const text = decoder.decode(files.get(robot));
-  const names = new Set([...text.matchAll(/<mesh\b[^>]*\bfilename\s*=\s*["']([^"']+)["']/g)].map((m) => m[1]));
-  const missing = [];
-  for (const name of names) {
+  const checked = meshNames(text.replace(/<visual\b.*?<\/visual>/gs, ''));
+  const lacking = [...meshNames(text)].filter((name) => {
     const place = placeOf(name, robot) ?? nameOf(name);
-    if (files.has(place)) continue;
+    if (files.has(place)) return false;
     const best = [...files.keys()]
       .map((path) => ({ path, ends: commonEnd(path, place) }))
       .reduce((a, b) => (b.ends > a.ends ? b : a), { path: '', ends: 0 });
     if (best.ends > 0) files.set(place, files.get(best.path));
-    else missing.push(name);
-  }
-  return missing;
+    return best.ends === 0;
+  });
+  return { missing: lacking.filter((name) => checked.has(name)), looks: lacking.filter((name) => !checked.has(name)) };
 }

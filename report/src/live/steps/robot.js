@@ -31,13 +31,15 @@ export function robotStep(live, examples) {
     }
     const robot = robotAmong(files) ?? (hasMesh(files) ? live.robotOf() : undefined);
     if (!robot || !all.has(robot)) return live.complain('Among these files is no robot: a URDF (or the output of xacro) has <robot> at its beginning.');
-    const missing = placeMeshes(all, robot);
+    const { missing, looks } = placeMeshes(all, robot);
     const read = await live.begin(all, robot);
     say.textContent = !read
       ? ''
       : missing.length > 0
         ? `${robot}: ${missing.length} of its meshes are missing (${missing.slice(0, 3).map(nameOf).join(', ')}${missing.length > 3 ? ', …' : ''}); drop them or their folder here. The notes tell what is left out without them.`
-        : `${robot} is read.`;
+        : looks.length > 0
+          ? `${robot} is read. Meshes for its looks alone are missing (${looks.length}): it is drawn as it is checked.`
+          : `${robot} is read.`;
   };
   const example = h(
     'select',

@@ -5,6 +5,17 @@ import { taskLine } from '../task.js';
 
 const offered = ['plan.json', 'poses.csv', 'report.html', 'calibrated.yaml', 'calibration.html', 'next.csv'];
 
+/** What in the path of a URDF tells whose controller the robot has, or that no maker's format is for it. */
+const makers = Object.entries({
+  'kuka-krl': /kuka/,
+  'abb-rapid': /abb|irb/,
+  'fanuc-tp': /fanuc/,
+  urscript: /universal|(^|[^a-z])ur\d/,
+  'yaskawa-inform': /yaskawa|motoman/,
+  'staubli-val3': /st[aä]e?ubli/,
+  'joint-trajectory': /franka|panda/,
+});
+
 /** @param {import('../main.js').Live} live */
 export function takeStep(live) {
   const { project } = live;
@@ -33,14 +44,26 @@ export function takeStep(live) {
     for (const [path, bytes] of files) saveFile(path, bytes);
     task.say(`Saved: ${[...files.keys()].map(nameOf).join(', ')}`);
   });
-  format.addEventListener('change', () => (needs.textContent = formats.find((f) => f.name === format.value)?.needs ?? ''));
+  const tell = () => (needs.textContent = formats.find((f) => f.name === format.value)?.needs ?? '');
+  /** The format of the robot's maker, once for each robot: a reader may choose another. */
+  let proposedFor = '';
+  const propose = () => {
+    const robot = live.robotOf() ?? '';
+    if (formats.length === 0 || robot === proposedFor) return;
+    proposedFor = robot;
+    const [name] = makers.find(([, mark]) => mark.test(robot.toLowerCase())) ?? [];
+    format.value = formats.find((f) => f.name === name)?.name ?? formats[0].name;
+    tell();
+  };
+  format.addEventListener('change', tell);
 
   /** The formats are the program's. */
   const fill = async () => {
-    if (formats.length > 0) return;
+    if (formats.length > 0) return propose();
     formats = (await live.list(['export', '--to', 'list']))?.formats ?? [];
     format.replaceChildren(...formats.map((f) => h('option', { value: f.name }, `${f.name}: ${f.description}`)));
-    format.dispatchEvent(new Event('change'));
+    tell();
+    propose();
     show();
   };
   for (const event of ['text', 'files']) project.addEventListener(event, show);

@@ -100,7 +100,7 @@ TEST(Motion, OfThreeJointsThatIsFreeKeepsTheClearanceAtEveryState) {
   std::vector<Eigen::Isometry3d> X(std::size_t(scene.frames->count()));
   Random random(12, 0);
   int free = 0, blocked = 0;
-  for (int i = 0; i < 200; ++i) {
+  for (int i = 0; i < 50; ++i) {
     std::vector<double> from, to, q(3);
     for (const double most : {3.0, 2.9, 0.1}) {
       from.push_back(random.uniform(-most, most));
@@ -123,8 +123,8 @@ TEST(Motion, OfThreeJointsThatIsFreeKeepsTheClearanceAtEveryState) {
     if (is_free) ASSERT_GE(least, -2 * motion_resolution) << i;
     else ASSERT_LT(least, 2e-3) << i;
   }
-  EXPECT_GT(free, 20);
-  EXPECT_GT(blocked, 20);
+  EXPECT_GT(free, 5);
+  EXPECT_GT(blocked, 5);
 }
 
 TEST(Clearance, IsKeptByLinksAndToolFromEachOtherAsFromObstacles) {

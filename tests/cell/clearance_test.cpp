@@ -92,6 +92,19 @@ TEST(BodyFrames, RateIsThatOfDifferencesBetweenStates) {
   }
 }
 
+// A turn about the base with a ball beyond a wall: in the middle it passes along the wall, and later it bends into it.
+TEST(Motion, ThatBendsIntoABodyIsSeenThoughItBeginsAlongIt) {
+  const auto cell = cell_with(
+      "clearance: 10 mm, tool: [{name: probe, sphere: 0.02, at: [0, 0, 0.3]}], obstacles: [{name: wall, box: [0.1, "
+      "0.8, "
+      "0.1], at: [1.45, 0, 0.6]}]");
+  const auto at = [](double angle) { return std::vector<double>{angle, 0, 0}; };
+  for (const double angle : {-0.6, 0.0, 0.6}) EXPECT_LT(cell->collision->violation(at(angle)), 0) << angle;
+  for (const double angle : {-0.26, 0.26}) EXPECT_GE(cell->collision->violation(at(angle)), 0) << angle;
+  EXPECT_FALSE(cell->collision->motion_is_free(at(-0.6), at(0.6)));
+  EXPECT_TRUE(cell->collision->motion_is_free(at(-0.05), at(0.05)));
+}
+
 TEST(Motion, OfThreeJointsThatIsFreeKeepsTheClearanceAtEveryState) {
   const auto cell = cell_with(
       "clearance: 30 mm, tool: [{name: hand, box: [0.2, 0.1, 0.1]}], obstacles: [{name: post, cylinder: {radius: 0.2, "

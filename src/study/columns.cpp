@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <ranges>
 
 #include "posewright/study/study.hpp"
 #include "posewright/support/error.hpp"
@@ -50,9 +49,9 @@ Configurations thinned(const Configurations& configurations, const std::vector<C
   std::iota(order.begin(), order.end(), std::size_t{0});
   // A list that has them in turn would be met at every second place, of one choice alone.
   std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
-    const auto value = [&](std::size_t i) { return [&, i](std::size_t k) { return configurations[i][k]; }; };
-    return std::ranges::lexicographical_compare(choices | std::views::transform(value(a)),
-                                                choices | std::views::transform(value(b)));
+    const auto differs = [&](std::size_t k) { return configurations[a][k] != configurations[b][k]; };
+    const auto first = std::ranges::find_if(choices, differs);
+    return first != choices.end() && configurations[a][*first] < configurations[b][*first];
   });
   for (std::size_t i = 0; i < take; ++i) taken.push_back(order[i * n / take]);
   std::ranges::sort(taken);

@@ -248,6 +248,8 @@ TEST(SamplesProblem, NamesWhatIsWrongInOneLine) {
            {replaced(cv, "[ ", "[ 7"), "f:4: is not a rotation; number 1 of R_gripper2base is 3 x 3, row by row"},
            {replaced(cv, "[ ", "[ 7, "), "R_gripper2base and t_gripper2base number 1 have 10 and 3 numbers; 9 (or 3"},
            {replaced(opencv_arrays(d), "rows: 4", "rows: 5"), "R_base2gripper has 12 numbers for 5 matrices"},
+           {"time" + csv_text(d).substr(2) + csv_text(d).substr(csv_text(d).find("\n1,") + 1),
+            "f:6: has the time of line 2; one sample for each"},
            {"id,robot.x,robot.qx,robot.qy,robot.qz,robot.qw,pose.x,pose.y,pose.z\n1,0,0,0,0,1,0,0,0\n",
             "has no column 'robot.y'"},
        }) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "posewright/calibration/hand_eye.hpp"
@@ -57,7 +58,24 @@ Eigen::Isometry3d pose_of(const Eigen::VectorXd& y) {
 }
 
 /// The samples that were measured, read as those of any robot that is known by its poses.
+/// Two samples of one time are a copy, or lists that were joined wrongly.
+void require_own_times(const PoseTable& table, const std::string& file) {
+  const auto time = std::ranges::find_if(
+      table.names, [](const std::string& name) { return name == "time" || name == "timestamp" || name == "stamp"; });
+  if (time == table.names.end()) return;
+  std::map<PoseCell, int> lines;
+  for (const PoseRow& row : table.rows) {
+    const PoseCell& cell = row.cells.at(std::size_t(time - table.names.begin()));
+    if (cell == PoseCell(std::string())) continue;
+    const auto [first, is_new] = lines.try_emplace(cell, row.line);
+    if (!is_new)
+      throw InputError({file, row.line}, fmt::format("has the {} of line {}", *time, first->second),
+                       "one sample for each");
+  }
+}
+
 std::vector<Sample> read(const std::string& text, const std::filesystem::path& file) {
+  require_own_times(samples_or_csv(text, file.string()), file.string());
   const Problem any = parse_problem(
       "posewright: 1\nrobot: {poses: yes}\n"
       "measurement: {type: pose, device: {type: isotropic, noise: {position: 1 mm, rotation: 1 mrad}}}\n"

@@ -26,6 +26,17 @@ inline Twist prismatic(const Eigen::Vector3d& axis) {
   return twist;
 }
 
+/// Axes e_u and e_v across a unit vector n: e_u along the projection of the axis that is most across n, the first of
+/// equal ones; e_v = n × e_u.
+inline Eigen::Matrix<double, 3, 2> axes_across(const Eigen::Vector3d& n) {
+  Eigen::Index most = 0;
+  n.cwiseAbs().minCoeff(&most);
+  Eigen::Matrix<double, 3, 2> axes;
+  axes.col(0) = (Eigen::Vector3d::Unit(most) - n[most] * n).normalized();
+  axes.col(1) = n.cross(Eigen::Vector3d(axes.col(0)));
+  return axes;
+}
+
 /// a with a · m = slope · [m, ξ] for every twist m: how slope · ξ changes if ξ is carried along m, [m, ξ] = (ω_m × v +
 /// v_m × ω, ω_m × ω).
 inline Twist carried_change(const Twist& twist, const Twist& slope) {

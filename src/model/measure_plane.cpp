@@ -2,6 +2,8 @@
 
 #include <numbers>
 
+#include "displacement.hpp"
+
 namespace posewright {
 namespace {
 
@@ -25,10 +27,7 @@ PlaneModel::PlaneModel(const MeasurementSpec& spec)
   replaces_tool_ = true;
   unseen_reason_ = "the probe is too far from the plane or beside it";
   readings_ = {{"plane.distance", "m"}};
-  Eigen::Index across = 0;
-  spec_.normal.cwiseAbs().minCoeff(&across);
-  in_plane_.col(0) = (Eigen::Vector3d::Unit(across) - spec_.normal[across] * spec_.normal).normalized();
-  in_plane_.col(1) = spec_.normal.cross(in_plane_.col(0));
+  in_plane_ = axes_across(spec_.normal);
   for (int k = 0; k < 3; ++k)
     parameters_.push_back(
         {"target." + spec_.probe.name + "." + "xyz"[k], "m", spec_.probe.position[k], probe_tolerance, Role::interest});

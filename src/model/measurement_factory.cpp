@@ -7,6 +7,7 @@
 #include "measure_camera.hpp"
 #include "measure_distance.hpp"
 #include "measure_inclination.hpp"
+#include "measure_line.hpp"
 #include "measure_plane.hpp"
 #include "measure_points.hpp"
 #include "measure_pose.hpp"
@@ -31,6 +32,7 @@ Measurement model_of(const DistanceMeasurement& distance, const MeasurementSpec&
 Measurement model_of(const PlaneMeasurement&, const MeasurementSpec& spec) {
   return std::make_unique<PlaneModel>(spec);
 }
+Measurement model_of(const LineMeasurement&, const MeasurementSpec& spec) { return std::make_unique<LineModel>(spec); }
 Measurement model_of(const InclinationMeasurement&, const MeasurementSpec& spec) {
   return std::make_unique<InclinationModel>(spec);
 }

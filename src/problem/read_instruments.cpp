@@ -66,6 +66,23 @@ PlaneMeasurement read_plane_distance(const Section& section) {
   return touched;
 }
 
+LineMeasurement read_line(const Section& section) {
+  allow_instrument(section, {"sensor", "line", "range", "width"});
+  LineMeasurement seen;
+  if (const Value* sensor = section.find("sensor")) seen.sensor = read_placement(Section(*sensor));
+  const Section line(section.at("line"));
+  line.allow({"point", "direction", "length"});
+  seen.point = line.at("point").vector(Quantity::length);
+  seen.direction = read_direction(line.at("direction"));
+  seen.length = line.at("length").number(Quantity::length, Sign::positive);
+  const yaml::Range range = read_range(section.at("range"), {Quantity::length});
+  seen.range_lower = range.lower;
+  seen.range_upper = range.upper;
+  seen.width = section.at("width").number(Quantity::length, Sign::positive);
+  seen.sigma = read_isotropic(section.at("device"), {Quantity::length}).value;
+  return seen;
+}
+
 InclinationMeasurement read_inclination(const Section& section) {
   allow_instrument(section, {"axes", "rpy", "up", "range"});
   InclinationMeasurement inclination;

@@ -147,6 +147,7 @@ constexpr InstrumentReader instruments[] = {
     {"position", [](const Section& measurement) -> InstrumentSpec { return read_points(measurement, true); }},
     {"distance", [](const Section& measurement) -> InstrumentSpec { return read_distance(measurement); }},
     {"plane", [](const Section& measurement) -> InstrumentSpec { return read_plane_distance(measurement); }},
+    {"line", [](const Section& measurement) -> InstrumentSpec { return read_line(measurement); }},
     {"inclination", [](const Section& measurement) -> InstrumentSpec { return read_inclination(measurement); }},
     {"camera", [](const Section& measurement) -> InstrumentSpec { return read_camera(measurement); }},
     {"joints", [](const Section& measurement) -> InstrumentSpec { return read_joint_sensors(measurement); }},
@@ -269,8 +270,9 @@ void require_fits_list(const Section& section, MeasurementSpec& instrument) {
   const auto* distance = std::get_if<DistanceMeasurement>(&instrument.instrument);
   if (std::holds_alternative<JointsMeasurement>(instrument.instrument) ||
       (distance != nullptr && distance->anchors.empty()))
-    section.at("type").fail("does not read where the tip is, and stands in a list of instruments",
-                            "allowed there: pose, points, position, plane, inclination, camera, distance with anchors");
+    section.at("type").fail(
+        "does not read where the tip is, and stands in a list of instruments",
+        "allowed there: pose, points, position, plane, line, inclination, camera, distance with anchors");
   if (const auto& sight = instrument.line_of_sight)
     if (sight->visible > 0 || sight->every > 0 || !sight->stations.empty())
       section.at("line_of_sight")

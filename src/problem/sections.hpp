@@ -27,6 +27,7 @@ MeasurementSpec read_measurement(const yaml::Value& value);
 void read_ways(const yaml::Section& root, Problem& problem);
 DistanceMeasurement read_distance(const yaml::Section& section);
 PlaneMeasurement read_plane_distance(const yaml::Section& section);
+LineMeasurement read_line(const yaml::Section& section);
 InclinationMeasurement read_inclination(const yaml::Section& section);
 CameraMeasurement read_camera(const yaml::Section& section);
 JointsMeasurement read_joint_sensors(const yaml::Section& section);

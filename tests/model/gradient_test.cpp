@@ -169,7 +169,7 @@ TEST(Gradient, OfRandomChainsSeenByATrackerWithEveryKindOfNoise) {
   }
 }
 
-TEST(Gradient, OfATouchedPlaneAndOfAnInclinometer) {
+TEST(Gradient, OfATouchedPlaneAnInclinometerAndAProfiler) {
   PlaneMeasurement plane;
   plane.probe = {"probe", {0.1, 0.2, -0.3}, 0};
   plane.normal = Eigen::Vector3d(0.3, -0.5, 0.8).normalized();
@@ -177,7 +177,12 @@ TEST(Gradient, OfATouchedPlaneAndOfAnInclinometer) {
   InclinationMeasurement inclination;
   inclination.rpy = {0.4, -0.3, 1.2};
   inclination.range = 1.4, inclination.sigma = 1e-4;
-  for (const InstrumentSpec& instrument : {InstrumentSpec(plane), InstrumentSpec(inclination)}) {
+  LineMeasurement line;
+  line.sensor.position = {0.1, 0.2, -0.3};
+  line.sensor.rpy = {0.4, -0.3, 1.2};
+  line.direction = Eigen::Vector3d(0.3, -0.5, 0.8).normalized();
+  line.length = 100, line.width = 100, line.range_lower = -100, line.range_upper = 100, line.sigma = 1e-5;
+  for (const InstrumentSpec& instrument : {InstrumentSpec(plane), InstrumentSpec(inclination), InstrumentSpec(line)}) {
     MeasurementSpec spec;
     spec.instrument = instrument;
     ExplicitModel model(std::make_unique<SerialChain>(random_chain(31, true, false)), make_measurement(spec),

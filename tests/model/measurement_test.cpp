@@ -202,6 +202,54 @@ TEST(Plane, IsReachedWithinItsRangeAndItsRadius) {
   EXPECT_FALSE(sees(1.19, -1.1e-3));
 }
 
+LineMeasurement wide_line() {
+  LineMeasurement line;
+  line.sensor = placement(5, 0.3);
+  line.point = {0.4, -0.2, 0.7};
+  line.direction = Eigen::Vector3d(0.3, -0.5, 0.8).normalized();
+  line.length = 200, line.width = 200, line.range_lower = -100, line.range_upper = 100, line.sigma = 1e-5;
+  return line;
+}
+
+TEST(Line, RowsEqualAutomaticDifferentiation) {
+  const Arm arm;
+  const LineMeasurement line = wide_line();
+  const ExplicitModel model = arm.with(spec_of(line));
+  // x is the axis most across the direction.
+  const Eigen::Vector3d v = line.direction.cross(Eigen::Vector3d::UnitX()).normalized(), u = v.cross(line.direction);
+  const auto oracle = [&](const std::vector<double>& q, const std::vector<Jet>& d) {
+    const Jet* own = arm.own(d);
+    Frame<Jet> sensor = arm.tip(q.data(), d);
+    sensor.then(at(line.sensor));
+    sensor.then_displace(own);
+    const Vector along = line.direction.cast<Jet>() + own[8] * u.cast<Jet>() + own[9] * v.cast<Jet>();
+    const Vector p = line.point.cast<Jet>() + own[6] * u.cast<Jet>() + own[7] * v.cast<Jet>();
+    const Vector a = seen_from(sensor, p), b = seen_from(sensor, p + along);
+    const Jet share = a[1] / (a[1] - b[1]);
+    return std::vector<Jet>{a[0] + share * (b[0] - a[0]), a[2] + share * (b[2] - a[2])};
+  };
+  for (const double size : {0.0, 1.0, 10.0}) EXPECT_LT(worst_model_error(model, 1000, size, 3, oracle), 1e-9);
+}
+
+TEST(Line, IsSeenWithinRangeAndFieldWhereItCrossesTheLight) {
+  LineMeasurement line;
+  line.point = {0, 0, 0.5};
+  line.direction = {0, 1, 0};
+  line.length = 0.4, line.width = 0.1, line.range_lower = 0.1, line.range_upper = 0.3, line.sigma = 1e-5;
+  const auto instrument = make_measurement(spec_of(line));
+  const auto sees = [&](double x, double y, double z, double turn) {
+    const Eigen::Isometry3d X = Eigen::Translation3d(x, y, z) * Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ());
+    return instrument->sees({X, {}, 0});
+  };
+  EXPECT_TRUE(sees(0.04, 0.19, 0.21, 0));
+  EXPECT_FALSE(sees(0.06, 0, 0.3, 0)) << "beside the field";
+  EXPECT_FALSE(sees(0, 0.21, 0.3, 0)) << "beyond the end";
+  EXPECT_FALSE(sees(0, 0, 0.19, 0)) << "too far";
+  EXPECT_FALSE(sees(0, 0, 0.41, 0)) << "too near";
+  EXPECT_TRUE(sees(0, 0, 0.3, 1.3));
+  EXPECT_FALSE(sees(0, 0, 0.3, 1.4)) << "along the light";
+}
+
 TEST(Inclination, RowsEqualAutomaticDifferentiation) {
   const Arm arm;
   InclinationMeasurement inclination;

@@ -150,6 +150,31 @@ class Plane:
         return np.array([[si(self.device["noise"])**2]])
 
 
+class Line:
+    """Where a line crosses the plane y = 0 of a profiler on the tip: x and z there."""
+
+    def __init__(self, measurement):
+        line, self.device = measurement["line"], measurement["device"]
+        self.point, direction = vector(line["point"]), np.array(line["direction"], float)
+        self.direction, self.X_sensor = direction / np.linalg.norm(direction), placement(measurement.get("sensor", {}))
+        across = np.eye(3)[np.argmin(np.abs(self.direction))]
+        self.v = np.cross(self.direction, across) / np.linalg.norm(np.cross(self.direction, across))
+        self.u = np.cross(self.v, self.direction)
+        self.nominal = six("sensor") | dict.fromkeys(("line.u", "line.v", "line.tilt_u", "line.tilt_v"), 0.0)
+        self.stands = stands_at("sensor", self.X_sensor)
+
+    def read(self, X, values, station, seen_from):
+        X_sensor = X @ self.X_sensor @ displacement(values, "sensor")
+        place = self.point + values["line.u"] * self.u + values["line.v"] * self.v
+        way = self.direction + values["line.tilt_u"] * self.u + values["line.tilt_v"] * self.v
+        # place + s way = sensor's origin + x e_x + z e_z
+        s, x, z = np.linalg.solve(np.column_stack([way, -X_sensor[:3, 0], -X_sensor[:3, 2]]), X_sensor[:3, 3] - place)
+        return np.array([x, z])
+
+    def noise(self, X, values, station):
+        return si(self.device["noise"])**2 * np.eye(2)
+
+
 class Inclination:
     """Angles between axes of a level on the tip and the horizontal plane."""
 
@@ -227,4 +252,4 @@ def instrument_of(measurement):
         return Points(measurement)
     if kind == "distance":
         return Anchors(measurement)
-    return {"pose": Pose, "plane": Plane, "inclination": Inclination, "camera": Camera}[kind](measurement)
+    return {"pose": Pose, "plane": Plane, "line": Line, "inclination": Inclination, "camera": Camera}[kind](measurement)

@@ -16,8 +16,10 @@ def default_tolerance(name, unit, value):
         return 0.01 if name.startswith(("kappa", "K_")) else None
     if owner in ("base", "tool") or owner.startswith("station."):
         return np.radians(1) if turns else 0.005 if owner == "tool" else 0.01
-    if owner == "plane":
-        return 0.01 if kind == "offset" else np.radians(1)
+    if owner in ("plane", "line"):
+        return 0.01 if kind in ("offset", "u", "v") and unit == "m" else np.radians(1)
+    if owner == "sensor":
+        return np.radians(1) if turns else 0.005
     if owner.startswith(("target.", "anchor.")):
         return 1e-3
     if kind == "gear":

@@ -124,8 +124,8 @@ const BadFile parallel_robot[] = {
 
 const BadFile measurements[] = {
     {"MeasurementKindUnknown", arm, "type: points", "type: crystal_ball", 10,
-     "measurement.type is 'crystal_ball'; allowed: pose, points, position, distance, plane, inclination, camera, "
-     "joints"},
+     "measurement.type is 'crystal_ball'; allowed: pose, points, position, distance, plane, line, inclination, "
+     "camera, joints"},
     {"MeasurementKindMissing", arm, "  type: points\n", "", 9, "measurement has no key 'type'"},
     {"TargetsForPose", arm, "type: points", "type: pose", 11,
      "unknown key 'targets'; allowed: type, name, of, in, mount, components, device, repeats, repeatability, "

@@ -178,6 +178,14 @@ const Bad bad_instruments[] = {
      "{type: camera, mount: hand, camera: {focal: [9, 9], centre: [1, 1], size: [9, 9]}, board: {rows: 3, columns: 3, "
      "spacing: 1}, device: {type: isotropic, noise: 0.2}, repeatability: 0.1}",
      "is a plain number beside a noise in pixels; random offset of the robot, with its unit: m, mm, um, nm"},
+    {"LineWithoutWidth",
+     "{type: line, line: {point: [0, 0, 0], direction: [1, 0, 0], length: 1}, range: [0.1, 0.2], device: {type: "
+     "isotropic, noise: 1 um}}",
+     "has no key 'width'"},
+    {"LineWithoutDirection",
+     "{type: line, line: {point: [0, 0, 0], direction: [0, 0, 0], length: 1}, range: [0.1, 0.2], width: 0.1, device: "
+     "{type: isotropic, noise: 1 um}}",
+     "direction"},
     {"NoSensors", "{type: joints, sensors: [], device: {type: isotropic, noise: 1 mrad}}", "at least one sensor"},
     {"LoadWord", "{type: position, target: [0, 0, 0], load: heavy, device: {type: isotropic, noise: 1 um}}",
      "is 'heavy'; allowed: absolute, loaded_minus_unloaded"},

@@ -79,6 +79,16 @@ struct PlaneMeasurement {
   double sigma = 0.0;                                 ///< m
 };
 
+/// Laser profiler on the tip: where a straight edge or a wire crosses the plane of its light.
+struct LineMeasurement {
+  Placement sensor;                                      ///< of the profiler's frame in the tip's; it sees in y = 0
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();       ///< middle of the line, measurement frame, m
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  ///< of length 1, measurement frame
+  double length = 0.0, width = 0.0;                      ///< of the line; of the sensor's field in x, m
+  double range_lower = 0.0, range_upper = 0.0;           ///< z in the sensor's frame, m
+  double sigma = 0.0;                                    ///< m, of x and of z
+};
+
 /// Inclinometer on the tip: angles between its axes and the horizontal plane.
 struct InclinationMeasurement {
   Components axes{0, 1};                          ///< of the sensor
@@ -135,8 +145,8 @@ struct TogetherMeasurement {
 };
 
 using InstrumentSpec =
-    std::variant<PoseMeasurement, PointsMeasurement, DistanceMeasurement, PlaneMeasurement, InclinationMeasurement,
-                 CameraMeasurement, JointsMeasurement, InstrumentList, TogetherMeasurement>;
+    std::variant<PoseMeasurement, PointsMeasurement, DistanceMeasurement, PlaneMeasurement, LineMeasurement,
+                 InclinationMeasurement, CameraMeasurement, JointsMeasurement, InstrumentList, TogetherMeasurement>;
 
 /// Repeatability, 1σ: a random displacement at every visit that averaging does not reduce. One displacement of
 /// the tip, common to all that is read during the visit.

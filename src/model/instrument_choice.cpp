@@ -196,14 +196,10 @@ bool InstrumentChoice::do_pull_back(const Point& at, std::span<const int> select
 
 /// By robot and instrument themselves: the model around them has settled the robot already.
 bool InstrumentChoice::do_read(const Point& at, Eigen::VectorXd& y) const {
-  static thread_local Twists none;
   const Part& part = part_at(at.q);
-  const Point tip = tip_point(part, at);
-  Eigen::Isometry3d X;
-  if (!part.model->tip().linearise(tip, {}, X, none, nullptr)) return false;
   const std::vector<double> correction = correction_of(part, at.correction);
   Eigen::VectorXd own(part.model->rows());
-  part.model->measurement().read({X, std::span(correction).subspan(tip.correction.size()), 0}, own);
+  if (!part.model->read_settled({at.q.first(at.q.size() - 1), correction, at.chosen}, own)) return false;
   y.setConstant(rows_, std::numeric_limits<double>::quiet_NaN());
   y(part.rows) = own;
   return true;

@@ -444,6 +444,31 @@ TEST(InstrumentList, ProbabilitiesOfAnInstrumentAreEven) {
   for (const int count : low) EXPECT_NEAR(double(count) / draws, 0.1, 0.11);
 }
 
+TEST(InstrumentList, AnglesCountFromTheNominalOrientation) {
+  const Planar planar(R"(posewright: 1
+robot: {urdf: arm.urdf}
+measurement:
+  - {name: pose, type: pose, components: [x, y, rz], device: {type: isotropic, noise: {position: 20 um, rotation: 1 mrad}}}
+  - {name: level, type: inclination, range: 30 deg, device: {type: isotropic, noise: 1 mrad}}
+  - {name: both, together: [pose, level]}
+variants: {arm: {parameters: [q1.offset, q2.offset]}}
+)");
+  const auto model = make_model(planar.problem);
+  std::vector<double> correction(model->parameters().size());
+  for (const char* offset : {"q1.offset", "q2.offset"}) {
+    std::size_t i = 0;
+    while (model->parameters()[i].name != offset) ++i;
+    correction[i] = 1e-3;
+  }
+  // Two joints that turn by 1 mrad each about z turn the tip by 2 mrad; a level sees nothing of that.
+  for (const double reader : {0.0, 2.0}) {
+    Eigen::VectorXd y;
+    ASSERT_TRUE(model->predict(std::vector<double>{0.4, 0.9, reader}, correction, y));
+    EXPECT_NEAR(y[2], 2e-3, 1e-12);
+    EXPECT_EQ(std::isfinite(y[3]), reader == 2.0);
+  }
+}
+
 TEST(InstrumentList, SimulationsCoverAndTheirReadingsAreReadBack) {
   const Planar planar;
   const Plan plan = plan_problem(planar.problem, {}, Monitor{});

@@ -28,6 +28,9 @@ class ExplicitModel : public IdentificationModel {
   /// Number of the tip's parameters in use; the instrument's follow.
   int tip_parameters() const { return tip_parameters_; }
 
+  /// Readings where the robot stands already, for a model around this one. @param y  size rows()
+  bool read_settled(const Point& at, Eigen::VectorXd& y) const { return do_read(at, y); }
+
  private:
   void do_take_loads_at(std::span<const double> correction) override;
   bool do_linearise(const Point& at, std::span<const int> selected, Linearisation& out) const override;

@@ -1,5 +1,8 @@
 #include "measure_line.hpp"
 
+#include <algorithm>
+#include <array>
+
 #include "posewright/model/placement.hpp"
 
 namespace posewright {

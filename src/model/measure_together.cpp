@@ -46,26 +46,30 @@ bool TogetherModel::reads_from_nominal() const {
   return std::ranges::any_of(members_, [](const Member& member) { return member.model->reads_from_nominal(); });
 }
 
-void TogetherModel::difference(const Eigen::VectorXd& measured, const Eigen::VectorXd& predicted,
-                               Eigen::VectorXd& out) const {
+template <class Apply>
+void TogetherModel::member_by_member(const Eigen::VectorXd& a, const Eigen::VectorXd& b, Eigen::VectorXd& out,
+                                     const Apply& apply) const {
   Eigen::VectorXd own;
   out.resize(rows_);
   for (const Member& member : members_) {
     const auto rows = Eigen::seqN(member.first_row, member.model->rows());
-    member.model->difference(measured(rows), predicted(rows), own);
+    apply(*member.model, a(rows), b(rows), own);
     out(rows) = own;
   }
 }
 
+void TogetherModel::difference(const Eigen::VectorXd& measured, const Eigen::VectorXd& predicted,
+                               Eigen::VectorXd& out) const {
+  member_by_member(
+      measured, predicted, out,
+      [](const MeasurementModel& model, const auto& a, const auto& b, auto& own) { model.difference(a, b, own); });
+}
+
 void TogetherModel::shifted(const Eigen::VectorXd& predicted, const Eigen::VectorXd& change,
                             Eigen::VectorXd& out) const {
-  Eigen::VectorXd own;
-  out.resize(rows_);
-  for (const Member& member : members_) {
-    const auto rows = Eigen::seqN(member.first_row, member.model->rows());
-    member.model->shifted(predicted(rows), change(rows), own);
-    out(rows) = own;
-  }
+  member_by_member(predicted, change, out, [](const MeasurementModel& model, const auto& a, const auto& b, auto& own) {
+    model.shifted(a, b, own);
+  });
 }
 
 void TogetherModel::rows_of_twists(const Sighting& sighting, const Eigen::Ref<const Twists>& twists,

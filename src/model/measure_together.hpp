@@ -39,6 +39,9 @@ class TogetherModel : public MeasurementModel {
   };
   /// The sighting as it is one of the member.
   static Sighting of(const Member& member, const Sighting& sighting);
+  template <class Apply>
+  void member_by_member(const Eigen::VectorXd& a, const Eigen::VectorXd& b, Eigen::VectorXd& out,
+                        const Apply& apply) const;
   Adjoint adjoint_of(const Member& member, const Sighting& sighting, const Adjoint& f) const;
 
   std::vector<Member> members_;

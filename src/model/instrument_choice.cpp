@@ -8,15 +8,6 @@
 
 namespace posewright {
 
-/// A point and selected parameters as one instrument's model has them.
-struct InstrumentChoice::Inside {
-  const Part& part;
-  Eigen::Index rows;
-  std::vector<double> q, correction;
-  std::vector<int> selected;              ///< those that it has
-  std::vector<Eigen::Index> selected_at;  ///< where these are among all that are selected
-};
-
 InstrumentChoice::InstrumentChoice(std::vector<InstrumentOfList> instruments) {
   // Of the same robot: without tool.*, which are its last, where all targets stand for the tool.
   const ExplicitModel& whole = *std::ranges::max_element(instruments, {}, [](const InstrumentOfList& one) {
@@ -94,7 +85,9 @@ int InstrumentChoice::index_in(const Part& part, int index) const {
 
 InstrumentChoice::Inside InstrumentChoice::inside(const Point& at, std::span<const int> selected) const {
   const Part& part = part_at(at.q);
-  Inside there{part, part.model->rows(), {at.q.begin(), at.q.end() - 1}, correction_of(part, at.correction), {}, {}};
+  Inside there{
+      *part.model, part.variance, part.rows, {at.q.begin(), at.q.end() - 1}, correction_of(part, at.correction), {},
+      {}};
   // A single station is a choice without a choice.
   there.q.resize(part.model->coordinates().size(), 0.0);
   for (std::size_t j = 0; j < selected.size(); ++j)
@@ -130,13 +123,13 @@ void spread_covariance(const Eigen::MatrixXd& own, double variance, const std::v
 bool InstrumentChoice::do_linearise(const Point& at, std::span<const int> selected, Linearisation& out) const {
   static thread_local Linearisation own;
   const Inside there = inside(at, selected);
-  const std::vector<Eigen::Index>& rows = there.part.rows;
+  const std::vector<Eigen::Index>& rows = there.rows;
   share_of_rows(out.reading_share, rows, own.reading_share);
-  if (!there.part.model->linearise(there.q, there.correction, there.selected, own)) return false;
+  if (!there.model.linearise(there.q, there.correction, there.selected, own)) return false;
   out.G.setZero(rows_, Eigen::Index(selected.size()));
   for (std::size_t j = 0; j < there.selected.size(); ++j)
     out.G(rows, there.selected_at[j]) = own.G.col(Eigen::Index(j));
-  spread_covariance(own.covariance, there.part.variance, rows, rows_, out.covariance);
+  spread_covariance(own.covariance, there.variance, rows, rows_, out.covariance);
   return true;
 }
 
@@ -155,8 +148,8 @@ int InstrumentChoice::do_block_rows(std::span<const int> selected) const {
 bool InstrumentChoice::do_linearise_factored(const Point& at, std::span<const int> selected, Linearisation& out) const {
   static thread_local Linearisation own;
   const Inside there = inside(at, selected);
-  const ExplicitModel& model = *there.part.model;
-  const std::vector<Eigen::Index>& rows = there.part.rows;
+  const ExplicitModel& model = there.model;
+  const std::vector<Eigen::Index>& rows = there.rows;
   const Eigen::Index width = do_block_rows(selected);
   share_of_rows(out.reading_share, rows, own.reading_share);
   const int own_width = model.block_rows(there.selected);
@@ -171,12 +164,12 @@ bool InstrumentChoice::do_linearise_factored(const Point& at, std::span<const in
     out.random_coefficients.topRows(own_width) = own.random_coefficients;
   } else {
     if (!model.linearise(there.q, there.correction, there.selected, own)) return false;
-    for (Eigen::Index i = 0; i < there.rows; ++i) out.basis(rows[std::size_t(i)], i) = 1.0;
+    for (Eigen::Index i = 0; i < model.rows(); ++i) out.basis(rows[std::size_t(i)], i) = 1.0;
     for (std::size_t j = 0; j < there.selected.size(); ++j)
-      out.coefficients.col(there.selected_at[j]).head(there.rows) = own.G.col(Eigen::Index(j));
+      out.coefficients.col(there.selected_at[j]).head(model.rows()) = own.G.col(Eigen::Index(j));
     out.random_coefficients.resize(width, 0);
   }
-  spread_covariance(own.covariance, there.part.variance, rows, rows_, out.covariance);
+  spread_covariance(own.covariance, there.variance, rows, rows_, out.covariance);
   return true;
 }
 
@@ -185,10 +178,10 @@ bool InstrumentChoice::do_pull_back(const Point& at, std::span<const int> select
   // Nominal values of their own are this model's, and those inside would differentiate where they are not.
   if (!at.correction.empty()) return false;
   const Inside there = inside(at, selected);
-  const std::vector<Eigen::Index>& rows = there.part.rows;
+  const std::vector<Eigen::Index>& rows = there.rows;
   std::vector<double> own(there.q.size());
-  if (!there.part.model->pull_back(there.q, there.selected, by_G(rows, there.selected_at),
-                                   there.part.variance * by_covariance(rows, rows), own))
+  if (!there.model.pull_back(there.q, there.selected, by_G(rows, there.selected_at),
+                             there.variance * by_covariance(rows, rows), own))
     return false;
   std::copy_n(own.begin(), gradient.size() - 1, gradient.begin());
   return true;
@@ -244,7 +237,7 @@ void InstrumentChoice::do_take_loads_at(std::span<const double> correction) {
 
 bool InstrumentChoice::do_measurable(const Point& at) const {
   const Inside there = inside(at, {});
-  return there.part.model->measurable(there.q, there.correction);
+  return there.model.measurable(there.q, there.correction);
 }
 
 bool InstrumentChoice::do_actuator_values(const Point& at, std::span<double> values) const {

@@ -1,6 +1,5 @@
-// The certificate over the whole workspace, where it is proved. Second roads: grids of candidates finer than any plan
-// needs, and sensitivities at random configurations by the model alone.
-
+// Second roads to proofs: grids of candidates finer than any plan needs, sensitivities at random configurations by the
+// model alone.
 #include "posewright/proof/workspace_proof.hpp"
 
 #include <fmt/format.h>
@@ -85,7 +84,6 @@ TEST_F(WorkspaceProofs, TheSentenceNamesTheMarginWithoutWhichTheBoundDoesNotHold
   const double inner = 2 - 60 * std::numbers::pi / 180 + 1e-9;
   expect_best_of_a_grid_below(problem, plan, 98,
                               [&](double q1, double q2) { return std::abs(q1) <= inner && std::abs(q2) <= inner; });
-  // Poses that turn the second joint to its limits have more.
   DesignEdits options;
   options.candidates_from = given_poses(problem, {{-2, -2}, {-2, 2}, {2, -2}, {2, 2}, {0, 1.5}, {0, -1.5}});
   options.edit("repeats", "allow");
@@ -109,7 +107,7 @@ struct Kind {
   bool turns = false;    ///< all its joints
   bool follows = false;  ///< the last joint follows the first
   int joints = 0;        ///< 0: any number
-  /// What else of the workspace is limited, about a place of the tip: words of the problem file.
+  /// Words of the problem file that limit the workspace about a place of the tip.
   std::string (*limits)(const Eigen::Isometry3d&, Random&) = nullptr;
 };
 
@@ -138,8 +136,10 @@ std::vector<Kind> kinds() {
       "device: {type: laser_tracker, noise: {range: 3 um, range_per_m: 1 um, angle: 6 urad}, stations: {A: [3, 1, 0.5]";
   const std::string elastic =
       ", elastostatic: {loads: {light: {mass: 2, centre_of_mass: [0.1, 0, 0.2]}, heavy: {force: [20, -40, -150], "
-      "point: "
-      "[0.1, 0.2, -0.1], moment: [3, -2, 5]}}";
+      "point: [0.1, 0.2, -0.1], moment: [3, -2, 5]}}";
+  const std::string list = "- {name: a, type: points, targets: {P: [0.1, 0.2, 0.1], Q: [0, 0.1, 0.3]}, " + tracker +
+                           "}}}\n  - {name: b, type: position, target: [0.2, 0.1, 0.1], " + isotropic +
+                           ", repeatability: 30 um}\n";
   return {
       {"points", "", isotropic, "", true},
       {"tracker", "", tracker + "}}", "", true},
@@ -155,6 +155,7 @@ std::vector<Kind> kinds() {
       {"distances", "",
        "type: distance\n  targets: {A: [0.1, 0.05, -0.02]}\n  anchors: {P: [3, 2, 0.5], Q: [-2, 3, 1]}\n  " + isotropic,
        "", false},
+      {"a list of instruments", "", list, "target@a.P.x, target@b.target.y, ", true},
       {"a joint that follows", "", isotropic, "", true, true, true},
       {"compliances", elastic + "}", isotropic, "j0.compliance, ", true, true},
       {"deflections", elastic + ", compliance: {j0: 1e-5}}", isotropic, "j0.compliance, ", false, true},
@@ -205,10 +206,12 @@ struct RandomArm {
         fmt::format("type: points\n  targets: {{A: [{}, {}, 0.1], B: [{}, 0.05, {}]}}\n  ", random.uniform(-0.3, 0.3),
                     random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3));
     const std::string before = "posewright: 1\nrobot: {urdf: arm.urdf" + kind.robot + "}\nmeasurement:\n  " +
-                               (kind.measurement.starts_with("type") ? "" : points) + kind.measurement +
+                               (kind.measurement.starts_with("device") ? points : "") + kind.measurement +
                                "\nvariants: {v: {parameters: [" + joints + kind.columns +
                                "base.x, base.rz]}}\nworkspace: {joints: {margin: 0}";
     problem = read_problem(folder.write("p.yaml", before + "}\n"));
+    if (auto* list = std::get_if<InstrumentList>(&problem.measurement.instrument))
+      list->instruments.front().noise_factor = 1.7;
     model = make_model(problem);
     for (const Coordinate& c : model->coordinates())
       inside.push_back(c.discrete() ? c.values.front() : random.uniform(c.lower, c.upper));
@@ -280,13 +283,13 @@ TEST_F(WorkspaceProofs, NoConfigurationOfARandomArmIsBeyondTheBound) {
     // What can be chosen is tuned to where d is large.
     result.support = {best};
     result.weights = {1.0};
-    // Numbers that follow a joint are bounded to the first order only: what takes long is stopped, and is a bound too.
+    // What takes long is stopped, and is a bound too.
     WorkspaceBoundOptions options;
     options.proof.seconds = 0.25;
     prove_workspace(result, *space, 1000, rows, options, Monitor{});
     // Cut short: a busy machine did not even interpolate it in time.
-    const bool stopped = result.proof.why_not == WorkspaceProof::cut_short;
-    if (stopped || (!kind.tight && result.proof.why_not.find("too high") != std::string::npos)) {
+    if (result.proof.why_not == WorkspaceProof::cut_short ||
+        (!kind.tight && result.proof.why_not.find("too high") != std::string::npos)) {
       ++refused;
       continue;
     }
@@ -394,7 +397,6 @@ TEST_F(WorkspaceProofs, WhatIsNoPolynomialIsSearchedAndSaidToBe) {
     EXPECT_THAT(plan_summary(plan), HasSubstr("no proof: "));
     return plan.certificate.workspace->why_not;
   };
-  // A turn of each visit moves the tip by what it points at; a camera divides by the distance.
   EXPECT_THAT(why(arm(", repeatability: {position: 0.1 mm, rotation: 0.01 deg}")), HasSubstr("turns of each visit"));
   EXPECT_THAT(why(example("instruments/camera_on_hand.yaml")), HasSubstr("not linear in where the tip is"));
 }

@@ -38,6 +38,17 @@ class InstrumentChoice : public IdentificationModel {
   /// @param instruments  of the same robot, no two names alike
   explicit InstrumentChoice(std::vector<InstrumentOfList> instruments);
 
+  /// A point and selected parameters as the model of the instrument that reads there has them.
+  struct Inside {
+    const ExplicitModel& model;
+    double variance;                        ///< of its readings, times that of the model
+    const std::vector<Eigen::Index>& rows;  ///< of the model's rows among all
+    std::vector<double> q, correction;
+    std::vector<int> selected;              ///< those that it has
+    std::vector<Eigen::Index> selected_at;  ///< where these are among all that are selected
+  };
+  Inside inside(const Point& at, std::span<const int> selected) const;
+
  private:
   bool do_linearise(const Point& at, std::span<const int> selected, Linearisation& out) const override;
   bool do_pull_back(const Point& at, std::span<const int> selected, const Eigen::MatrixXd& by_G,
@@ -67,11 +78,9 @@ class InstrumentChoice : public IdentificationModel {
   };
   void add_own(const InstrumentOfList& instrument, Part& part);
   void find_own(const InstrumentOfList& instrument, Part& part) const;
-  struct Inside;
   const Part& part_at(std::span<const double> q) const { return parts_[std::size_t(q.back())]; }
   std::vector<double> correction_of(const Part& part, std::span<const double> correction) const;
   int index_in(const Part& part, int index) const;
-  Inside inside(const Point& at, std::span<const int> selected) const;
   Point tip_point(const Part& part, const Point& at) const;
   template <class Apply>
   void segment_by_segment(const Eigen::VectorXd& a, const Eigen::VectorXd& b, Eigen::VectorXd& out,

@@ -86,7 +86,7 @@ void read_point_device(const Value& value, PointNoise& noise, std::vector<Statio
 }
 
 PoseMeasurement read_pose(const Section& section) {
-  allow_instrument(section, {"mount", "components"});
+  allow_instrument(section, {"mount", "components", "joined"});
   PoseMeasurement pose;
   const Value* mount = section.find("mount");
   pose.on_hand = mount != nullptr && mount->choice({"hand", "fixed"}) == "hand";
@@ -121,6 +121,8 @@ PoseMeasurement read_pose(const Section& section) {
   }
   if (const Value* components = section.find("components"))
     pose.components = read_components(*components, pose_components);
+  if (const Value* joined = section.find("joined")) pose.joined = joined->flag();
+  if (pose.joined && pose.on_hand) mount->fail("is hand with joined tips", "tips have no instrument: fixed");
   return pose;
 }
 

@@ -10,6 +10,7 @@
 #include "posewright/model/model_factory.hpp"
 #include "posewright/model/variant_columns.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/workspace/motion_space.hpp"
 #include "posewright/workspace/workspace.hpp"
 
 namespace posewright {
@@ -35,6 +36,7 @@ class SequenceCheck {
   }
 
   void run() {
+    require_free_tips(problem_.measurement);
     check_coordinates();
     for (const SequencePose& pose : sequence_.poses) check_values(pose.values, fmt::format("pose {}", pose.id));
     if (!sequence_.is_route) return;

@@ -72,6 +72,7 @@ class MotionSpace::Implementation {
         own_model(cell == nullptr ? make_model({problem, find_variant(problem, "")}) : nullptr),
         model(cell == nullptr ? *own_model : *cell->model),
         all(limits_in_force(model, problem, cell.get())) {
+    require_free_tips(problem.measurement);
     for (std::size_t i = 0; i < all.size(); ++i) {
       if (all[i].choice()) continue;
       if (is_second(all[i].name))
@@ -125,6 +126,12 @@ class MotionSpace::Implementation {
   std::vector<Mover> movers;
   std::vector<double> home;
 };
+
+void require_free_tips(const MeasurementSpec& measurement) {
+  if (joins_tips(measurement))
+    throw CannotDo(
+        "measurement: tips are joined, and motions between such poses are not planned: they would open the loop");
+}
 
 MotionSpace::MotionSpace(const Problem& problem, std::shared_ptr<const Cell> cell)
     : implementation_(std::make_unique<Implementation>(problem, std::move(cell))) {}

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 
+#include "closure.hpp"
 #include "low_discrepancy.hpp"
 #include "posewright/support/parallel.hpp"
 #include "posewright/support/random.hpp"
@@ -38,8 +39,13 @@ void Sampler::interior(std::size_t wanted, const Monitor& monitor) {
       wanted, monitor, options_.draws_per_candidate, [&](std::size_t, std::span<double> q) { points.next(q); },
       [&](std::size_t, std::span<double> q) {
         scale(q);
-        return workspace_.violation(q);
+        return closed_violation(q);
       });
+}
+
+int Sampler::closed_violation(std::span<double> q) const {
+  if (workspace_.closure() != nullptr && !workspace_.closure()->close(q)) return open_loop();
+  return workspace_.violation(q);
 }
 
 double Sampler::feasible_share() const {
@@ -52,7 +58,7 @@ double Sampler::feasible_share() const {
     for (std::size_t i = 64 * chunk; i < 64 * (chunk + 1); ++i) {
       const std::span<double> q = std::span(drawn).subspan(i * d, d);
       scale(q);
-      good[i] = char(workspace_.violation(q) < 0);
+      good[i] = char(closed_violation(q) < 0);
     }
   });
   return double(std::count(good.begin(), good.end(), char(1))) / double(pilot_draws);
@@ -69,8 +75,8 @@ void Sampler::views(std::size_t wanted, const Monitor& monitor) {
         scale(q);
         Random random(seed, mix_bits(i));
         const bool there = workspace_.views()->move_to_view(q, random);
-        const int verdict = workspace_.violation(q);
-        return verdict >= 0 && !there ? int(workspace_.reasons().size()) : verdict;
+        const int verdict = closed_violation(q);
+        return verdict >= 0 && !there ? out_of_reach() : verdict;
       });
 }
 
@@ -85,7 +91,7 @@ void Sampler::boundary(std::size_t wanted, const Monitor& monitor) {
       },
       [&](std::size_t i, std::span<double> q) {
         scale(q);
-        const int verdict = workspace_.violation(q);
+        const int verdict = closed_violation(q);
         return verdict < 0 || anchors_ == 0 ? verdict : draw_back(i, q);
       });
 }
@@ -186,16 +192,18 @@ int Sampler::draw_back(std::size_t index, std::span<double> q) const {
     for (std::size_t k = 0; k < q.size(); ++k)
       trial[k] = workspace_.proposed()[k].discrete() ? inside[k] : inside[k] + t * (q[k] - inside[k]);
   };
+  const Closure* closure = workspace_.closure();
   const int steps = workspace_.cut_by_cell() ? bisections_in_cell : bisections;
   double feasible = 0.0, infeasible = 1.0;
   for (int i = 0; i < steps; ++i) {
     const double middle = 0.5 * (feasible + infeasible);
     along(middle);
-    (workspace_.is_free_at(trial) ? feasible : infeasible) = middle;
+    const bool meets = closure == nullptr || closure->close(trial);
+    (meets && workspace_.is_free_at(trial) ? feasible : infeasible) = middle;
   }
   along(feasible);
   std::copy(trial.begin(), trial.end(), q.begin());
-  return workspace_.violation(q);
+  return closed_violation(q);
 }
 
 }  // namespace posewright

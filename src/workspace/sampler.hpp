@@ -50,6 +50,8 @@ class Sampler {
   void share_among_instruments(std::size_t wanted);
   /// One candidate less is wanted of its instrument; false: none was.
   bool counts(std::span<const double> q);
+  /// Of a drawn configuration, which is moved to where joined tips meet: index into the reasons, or −1.
+  int closed_violation(std::span<double> q) const;
   /// From the unit box to the limits.
   void scale(std::span<double> q) const;
   /// Moves unit coordinates to 0 or 1: all of them for the first draws (every corner once, if they are not too many),
@@ -61,6 +63,8 @@ class Sampler {
   void add(const DrawnBatch& done, std::size_t target);
   /// A configuration that is there already would be a repeat under another name.
   bool is_new(std::span<const double> q);
+  int out_of_reach() const { return int(rejected_.size()) - 4; }
+  int open_loop() const { return int(rejected_.size()) - 3; }
   std::size_t drawn_before() const { return rejected_.size() - 2; }
   [[noreturn]] void fail() const;
 

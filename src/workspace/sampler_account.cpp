@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "closure.hpp"
 #include "posewright/model/instrument_choice.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/parallel.hpp"
@@ -42,6 +43,7 @@ Sampler::Sampler(const Workspace& workspace, const SamplingOptions& options)
   for (std::size_t k = 0; k < workspace.proposed().size(); ++k)
     if (const Coordinate& c = workspace.proposed()[k]; !c.periodic && !c.discrete()) bounded_.push_back(k);
   reasons_.push_back(out_of_reach_of_view);
+  reasons_.push_back(open_loop_reason);
   reasons_.push_back("drawn before");
   reasons_.push_back(passed_over_reason);
   rejected_.assign(reasons_.size(), 0);

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "checks.hpp"
+#include "closure.hpp"
 #include "limits.hpp"
 #include "posewright/model/model_factory.hpp"
 #include "posewright/support/error.hpp"
@@ -37,6 +38,11 @@ std::size_t append(const NecessaryLimits& own, NecessaryLimits& all) {
   all.of_coordinates.insert(all.of_coordinates.end(), own.of_coordinates.begin(), own.of_coordinates.end());
   all.values += own.values;
   return std::size_t(own.values);
+}
+
+/// OMPL's samplers draw states that do not close a loop.
+bool may_close(SamplerKind kind) {
+  return kind == SamplerKind::even || kind == SamplerKind::boundary || kind == SamplerKind::look_at;
 }
 
 class FeasibilityChecker : public ob::StateValidityChecker {
@@ -152,6 +158,7 @@ class Workspace::Implementation {
     reasons = checker->reasons();
     if (cell != nullptr && cell->sight() != nullptr && cell->sight()->can_propose())
       views = std::make_unique<ViewSampler>(model, *cell->sight(), proposed);
+    closure = Closure::make(model, problem.measurement, proposed);
     choose_samplers(problem.workspace, problem);
   }
 
@@ -163,8 +170,14 @@ class Workspace::Implementation {
     if (views == nullptr && std::any_of(sampler_shares.begin(), sampler_shares.end(), asks_for_views))
       throw InputError(file.at(spec.samplers_line), "look_at: this instrument has no viewing direction",
                        "cameras have one, and targets with normals and acceptance in line_of_sight");
+    if (closure != nullptr) {
+      const auto of_states = [](const auto& share) { return !may_close(share.first); };
+      if (std::any_of(sampler_shares.begin(), sampler_shares.end(), of_states))
+        throw InputError(file.at(spec.samplers_line), "this sampler opens the loop of joined tips",
+                         "allowed for them: even, boundary, look_at");
+    }
     if (samplers_are_given) return;
-    if (cut_by_cell())
+    if (cut_by_cell() && closure == nullptr)
       sampler_shares = {{Kind::even, 8}, {Kind::boundary, 6}, {Kind::obstacle_based, 3}, {Kind::gaussian, 3}};
     else sampler_shares = {{Kind::even, 1}, {Kind::boundary, 1}};
   }
@@ -180,6 +193,7 @@ class Workspace::Implementation {
   std::vector<std::pair<SamplerKind, double>> sampler_shares;
   bool samplers_are_given = false;
   std::unique_ptr<ViewSampler> views;
+  std::unique_ptr<Closure> closure;
 };
 
 Workspace::Workspace(const IdentificationModel& model, const Problem& problem, std::shared_ptr<const Cell> cell,
@@ -199,6 +213,7 @@ const std::vector<std::pair<SamplerKind, double>>& Workspace::sampler_shares() c
 }
 bool Workspace::samplers_are_given() const { return implementation_->samplers_are_given; }
 const ViewSampler* Workspace::views() const { return implementation_->views.get(); }
+const Closure* Workspace::closure() const { return implementation_->closure.get(); }
 bool Workspace::cut_by_cell() const { return implementation_->cut_by_cell(); }
 const Cell* Workspace::cell() const { return implementation_->cell.get(); }
 const std::shared_ptr<ompl::base::SpaceInformation>& Workspace::space_information() const {

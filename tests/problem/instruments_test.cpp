@@ -92,6 +92,9 @@ const Bad bad_instruments[] = {
      "[{name: a, type: points, targets: {T: [0, 0, 0]}, device: {type: laser_tracker, stations: {A: [1, 0, 0], B: [2, "
      "0, 0]}}}]",
      "has several stations in a list of instruments; one station each"},
+    {"JoinedTipsOnTheHand",
+     "{type: pose, mount: hand, joined: yes, device: {type: isotropic, noise: {position: 1, rotation: 1}}}",
+     "is hand with joined tips; tips have no instrument: fixed"},
     {"NoTargets", "{type: points, targets: {}, device: {type: isotropic, noise: 1}}", "at least one target is needed"},
     {"CovarianceNotSymmetric",
      "{type: position, target: [0, 0, 0], device: {type: covariance, matrix: [[1, 0.5, 0], [0, 1, 0], [0, 0, 1]]}}",

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
@@ -50,6 +51,7 @@ struct PoseMeasurement {
   std::vector<TargetSpec> photogrammetry;
   double point_sigma = 0.0;
   bool on_hand = false;  ///< the tip carries the instrument, which reads a target that stands in the measurement frame
+  bool joined = false;   ///< a joint keeps the readings at 0: the tip is joined to the measurement frame
 };
 
 /// Positions of one or more targets fixed to the tip. `position` in the file is `points` with one target.
@@ -181,6 +183,17 @@ struct MeasurementSpec {
 inline const std::vector<MeasurementSpec>* instruments_of(const MeasurementSpec& measurement) {
   const auto* list = std::get_if<InstrumentList>(&measurement.instrument);
   return list == nullptr ? nullptr : &list->instruments;
+}
+
+/// True if a joint keeps two tips together (PoseMeasurement::joined): configurations that close the loop are a part of
+/// the joints' box that has no volume.
+inline bool joins_tips(const MeasurementSpec& measurement) {
+  const auto joined = [](const MeasurementSpec& one) {
+    const auto* pose = std::get_if<PoseMeasurement>(&one.instrument);
+    return pose != nullptr && pose->joined;
+  };
+  const auto* list = instruments_of(measurement);
+  return list == nullptr ? joined(measurement) : std::any_of(list->begin(), list->end(), joined);
 }
 
 /// Those that read if `instrument` does; null for one that reads alone.

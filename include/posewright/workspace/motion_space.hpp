@@ -10,6 +10,9 @@
 
 namespace posewright {
 
+/// Throws CannotDo where tips are joined: motions between their poses would open the loop.
+void require_free_tips(const MeasurementSpec& measurement);
+
 /// Motions of the robot between poses: the continuous coordinates of its configurations, collisions on the way, and
 /// how long a motion takes. What is chosen per measurement (load case, station) does not move; listed joint positions
 /// may be passed. Members are const and may run in several threads at once.

@@ -18,6 +18,7 @@ class SpaceInformation;
 
 namespace posewright {
 
+class Closure;
 class ViewSampler;
 
 /// The one definition of a feasible configuration: an OMPL state space whose bounds are the robot's limits, narrowed
@@ -64,6 +65,8 @@ class Workspace {
   bool samplers_are_given() const;
   /// Proposes configurations from which the instrument sees; null for an instrument that sees from everywhere.
   const ViewSampler* views() const;
+  /// Moves q to where joined tips meet; null if no tips are joined, and any configuration within the limits is one.
+  const Closure* closure() const;
   /// State space and validity checker for OMPL's own algorithms; isValid() of a state is violation() < 0.
   const std::shared_ptr<ompl::base::SpaceInformation>& space_information() const;
   /// True if q lies on the boundary of the feasible set: a coordinate within 1e-6 of its range from where it may be

@@ -522,7 +522,7 @@ def init(
     poses: Optional[int] = None,
     accuracy: Union[float, str, None] = None,
     base: Optional[str] = None,
-    tip: Optional[str] = None,
+    tip: Union[str, Sequence[str], None] = None,
     floor: Union[float, str, None] = None,
     xacro: Union[str, Sequence[str], None] = None,
     # own

@@ -134,7 +134,8 @@ void print_summary(const InitFacts& facts, const InitResult& result, const fs::p
                file.string(), facts.samples.string());
     return;
   }
-  fmt::print("{}: {} joints from {} to {}, {}\n", file.string(), result.joints, result.base, result.tip,
+  fmt::print("{}: {} joints from {} to {}, {}\n", file.string(), result.joints, result.base,
+             fmt::join(result.tips, ", "),
              !facts.camera   ? std::string("laser tracker")
              : facts.on_hand ? facts.lens.name + " on the hand"
                              : facts.lens.name + " fixed");
@@ -195,9 +196,10 @@ int run_init(const po::variables_map& values, const Words& positional) {
         {facts.samples.empty() ? "urdf" : "samples",
          result.expanded.file.empty() ? source_of(facts).string() : result.expanded.file.string()},
         {"base", result.base},
-        {"tip", result.tip},
         {"joints", result.joints},
         {"notes", result.notes}};
+    if (result.tips.size() == 1) json["tip"] = result.tips.front();
+    else if (!result.tips.empty()) json["tips"] = result.tips;
     if (show) json["page"] = page.string();
     fmt::print("{}", json_text(json));
     return done;

@@ -86,9 +86,9 @@ const OptionTable<InitCall>& init_options() {
     t.text(
         "base", "LINK", "first link of the chain (parent of the first joint)",
         [](C & o) -> auto& { return o.facts.base; });
-    t.text(
-        "tip", "LINK", "last link of the chain (tool0, flange or the last one)",
-        [](C & o) -> auto& { return o.facts.tip; });
+    t.row({"tip", "LINK", "last link of the chain (tool0, flange or the last one); several: each with an instrument",
+           OptionKind::list},
+          [](C& o, const GivenOption& given) { o.facts.tips = given.values; });
     t.row({"floor", "HEIGHT", "height of floor or table in the base frame, with unit, or none (under the robot's foot)",
            OptionKind::size, "m"},
           [](C& o, const GivenOption& given) { read_floor(o.facts, given); });

@@ -112,10 +112,10 @@ TEST(TwoArms, AreProposedOnAFloorOfTheirRootIfTheirBaseMoves) {
     InitFacts facts;
     facts.robot = file;
     facts.base = base;
-    facts.tip = "right_hand";
-    InitRobot robot = look_at_robot(facts, "problem.yaml");
+    facts.tips = {"right_hand"};
+    InitRobot robot = look_at_robot(facts, "problem.yaml").front();
     facts.no_floor = true;
-    add_bodies(robot, parse_problem(init_text(facts, robot, {.position = {100, 0, 100}}), "problem.yaml", {}));
+    add_bodies(robot, parse_problem(init_text(facts, {robot}, {.position = {100, 0, 100}}), "problem.yaml", {}));
     facts.no_floor = false;
     return floor_of(facts, robot).value();
   };

@@ -29,7 +29,8 @@ struct InitFacts {
   std::filesystem::path samples;  ///< in place of a robot: poses of its tip and of a target (samples_problem)
   std::vector<std::pair<std::string, std::string>> xacro;
   Packages packages;
-  std::string base, tip;
+  std::string base;
+  std::vector<std::string> tips;  ///< one: found if empty; several: each is read by an instrument of its own
   bool camera = false;  ///< else a laser tracker
   KnownCamera lens;
   BoardFacts board;
@@ -46,7 +47,8 @@ struct InitFacts {
 
 struct InitResult {
   std::string text;  ///< of the problem file
-  std::string base, tip;
+  std::string base;
+  std::vector<std::string> tips;
   int joints = 0;
   std::vector<std::string> notes;  ///< default choices
   /// Expansion of the robot's xacro file, which `text` names in its place: to be written beside the problem. Empty for
@@ -60,7 +62,7 @@ struct InitResult {
 /// configuration collides, the floor or the pair of links that does so most is left out, with a note and a comment.
 /// Samples make the problem of samples_problem(); of the facts, only a fixed camera counts then.
 /// @param file  where the text will be: paths in it are relative to its folder
-/// Throws InputError as propose_chain() and for numbers out of range; CannotDo where no pose is feasible from any
+/// Throws InputError as propose_chain(), for several tips that are not told apart, and for numbers out of range; CannotDo where no pose is feasible from any
 /// place.
 InitResult init_problem(const InitFacts& facts, const std::filesystem::path& file, const Monitor& monitor);
 

@@ -145,7 +145,7 @@ std::string look_at_bodies(InitFacts facts, InitRobot& robot, const fs::path& fi
   facts.camera = false;
   facts.no_floor = true;
   try {
-    add_bodies(robot, parse_problem(init_text(facts, robot, far_away(robot)), file, facts.packages));
+    add_bodies(robot, parse_problem(init_text(facts, {robot}, far_away(robot)), file, facts.packages));
   } catch (const InputError& error) {
     return error.what();
   }
@@ -180,20 +180,24 @@ std::vector<double> free_home(const MotionSpace& space, const Collision& collisi
 }
 
 /// The problem of the arm and its surroundings alone.
-Problem cell_problem(InitFacts facts, const InitRobot& robot, const InitPlace& place, const fs::path& file) {
+Problem cell_problem(InitFacts facts, const std::vector<InitRobot>& tips, const InitPlace& place,
+                     const fs::path& file) {
   facts.camera = false;
-  InitPlace far = far_away(robot);
+  InitPlace far = far_away(tips.front());
   far.left_out = place.left_out;
-  return parse_problem(init_text(facts, robot, far), file, facts.packages);
+  return parse_problem(init_text(facts, tips, far), file, facts.packages);
 }
 
 /// A free home for the arm above its floor; empty, and why, where motions cannot be planned.
-std::vector<double> find_home(const Problem& problem, std::string& why) {
+std::vector<std::pair<Coordinate, double>> find_home(const Problem& problem, std::string& why) {
   why.clear();
   try {
     const std::shared_ptr<const Cell> cell = make_cell(problem);
-    std::vector<double> home = free_home(MotionSpace(problem, cell), *cell->collision);
-    if (home.empty()) why = "no home was found that is free";
+    const MotionSpace space(problem, cell);
+    const std::vector<double> values = free_home(space, *cell->collision);
+    if (values.empty()) why = "no home was found that is free";
+    std::vector<std::pair<Coordinate, double>> home;
+    for (std::size_t i = 0; i < values.size(); ++i) home.emplace_back(space.coordinates()[i], values[i]);
     return home;
   } catch (const InputError& error) {
     why = error.what();
@@ -237,17 +241,17 @@ std::string left_out_note(const InitObstacle& obstacle, const std::string& text,
 }
 
 /// The first stand from which a plan with all parameters can be made, else with most; empty, and why, if there is none.
-std::string place_instrument(const InitFacts& facts, const InitRobot& robot, InitPlace& place, const fs::path& file,
-                             const Monitor& monitor) {
+std::string place_instrument(const InitFacts& facts, const std::vector<InitRobot>& tips, InitPlace& place,
+                             const fs::path& file, const Monitor& monitor) {
   std::optional<InitPlace> best;
   std::exception_ptr inside;
   std::string why;
-  for (const Stand& stand : stands(facts, robot)) {
+  for (const Stand& stand : stands(facts, tips.front())) {
     place.position = stand.position;
     place.view = stand.view;
     place.held.clear();
     try {
-      place.held = try_out(init_text(facts, robot, place), file, facts, monitor);
+      place.held = try_out(init_text(facts, tips, place), file, facts, monitor);
       if (!best || place.held.size() < best->held.size()) best = place;
       if (best->held.empty()) break;
     } catch (const StationInside&) {
@@ -264,8 +268,8 @@ std::string place_instrument(const InitFacts& facts, const InitRobot& robot, Ini
 }
 
 /// Limits so wide that they were not meant as radians.
-void note_degrees(const InitRobot& robot, std::vector<std::string>& notes) {
-  for (const Coordinate& c : robot.chain.coordinates)
+void note_degrees(const std::vector<InitRobot>& tips, std::vector<std::string>& notes) {
+  for (const Coordinate& c : joints_of(tips))
     if (c.unit == "rad" && c.upper - c.lower > most_joint_turns * 2 * std::numbers::pi) {
       notes.push_back(fmt::format("joint {} has limits of {:g} to {:g} rad, which may be degrees: URDF has radians",
                                   in_quotes(c.name), c.lower, c.upper));
@@ -305,23 +309,24 @@ InitResult init_problem(const InitFacts& facts, const fs::path& file, const Moni
     result.notes = std::move(found.notes);
     return result;
   }
-  InitRobot robot = look_at_robot(facts, file);
+  std::vector<InitRobot> tips = look_at_robot(facts, file);
   InitResult result;
-  result.base = robot.links.base;
-  result.tip = robot.links.tip;
-  result.joints = int(robot.chain.coordinates.size());
+  result.base = tips.front().links.base;
+  for (const InitRobot& tip : tips) result.tips.push_back(tip.links.tip);
+  result.joints = int(joints_of(tips).size());
   InitPlace place;
-  place.no_cell = look_at_bodies(facts, robot, file);
+  for (InitRobot& tip : tips)
+    if (place.no_cell.empty()) place.no_cell = look_at_bodies(facts, tip, file);
   place.cell = place.no_cell.empty();
   if (!place.cell) result.notes.push_back("no collision is checked: " + place.no_cell);
-  note_degrees(robot, result.notes);
+  note_degrees(tips, result.notes);
   std::string no_home;
   while (true) {
-    if (place.cell) place.home = find_home(cell_problem(facts, robot, place, file), no_home);
-    const std::string why = place_instrument(facts, robot, place, file, monitor);
+    if (place.cell) place.home = find_home(cell_problem(facts, tips, place, file), no_home);
+    const std::string why = place_instrument(facts, tips, place, file, monitor);
     if (why.empty()) break;
     if (!place.cell || place.left_out.size() == most_left_out) throw CannotDo(why);
-    const std::optional<InitObstacle> obstacle = obstacle_of(cell_problem(facts, robot, place, file));
+    const std::optional<InitObstacle> obstacle = obstacle_of(cell_problem(facts, tips, place, file));
     if (!obstacle || (obstacle->is_floor() && facts.floor)) throw CannotDo(why);
     place.left_out.push_back(*obstacle);
   }
@@ -330,8 +335,8 @@ InitResult init_problem(const InitFacts& facts, const fs::path& file, const Moni
         fmt::format("no motion of this arm separates {} from the other parameters: held at the values in the file",
                     fmt::join(place.held, ", ")));
   if (!no_home.empty()) result.notes.push_back("reachability of poses is not checked: " + no_home);
-  if (facts.files_beside) result.expanded = expanded_robot(facts, robot, file);
-  result.text = init_text(facts, robot, place, result.expanded.file.filename());
+  if (facts.files_beside) result.expanded = expanded_robot(facts, tips.front(), file);
+  result.text = init_text(facts, tips, place, result.expanded.file.filename());
   for (const InitObstacle& obstacle : place.left_out)
     result.notes.push_back(left_out_note(obstacle, result.text, file));
   return result;

@@ -10,6 +10,7 @@
 #include "posewright/model/urdf_reader.hpp"
 #include "posewright/problem/package_search.hpp"
 #include "posewright/problem/read_robot_file.hpp"
+#include "posewright/support/text.hpp"
 
 namespace posewright {
 namespace {
@@ -137,10 +138,12 @@ std::string with_meshes_found(std::string text, const InitFacts& facts) {
 
 }  // namespace
 
-InitRobot look_at_robot(const InitFacts& facts, const fs::path& file) {
+namespace {
+
+/// @param arm  of the file
+InitRobot look_at_tip(SerialArmSpec arm, const InitFacts& facts, const std::string& tip, const fs::path& file) {
   InitRobot robot;
-  SerialArmSpec arm = read_robot_file(facts.robot, facts.xacro);
-  robot.links = propose_chain(arm, facts.base, facts.tip);
+  robot.links = propose_chain(arm, facts.base, tip);
   arm.base = Located<std::string>{robot.links.base, 0};
   arm.tip = Located<std::string>{robot.links.tip, 0};
   robot.chain = read_urdf_chain(arm, {facts.robot.string(), 0});
@@ -153,6 +156,33 @@ InitRobot look_at_robot(const InitFacts& facts, const fs::path& file) {
   robot.urdf = file_name_of(facts.robot, file);
   robot.expanded = arm.expanded;
   return robot;
+}
+
+}  // namespace
+
+std::vector<InitRobot> look_at_robot(const InitFacts& facts, const fs::path& file) {
+  const SerialArmSpec arm = read_robot_file(facts.robot, facts.xacro);
+  if (facts.tips.empty()) return {look_at_tip(arm, facts, "", file)};
+  std::vector<InitRobot> tips;
+  for (const std::string& tip : facts.tips) {
+    if (std::ranges::count(facts.tips, tip) > 1)
+      throw InputError({}, "--tip " + in_quotes(tip) + " is given twice", "a link once");
+    tips.push_back(look_at_tip(arm, facts, tip, file));
+    if (tips.back().links.base != tips.front().links.base)
+      throw InputError({},
+                       fmt::format("the chains to '{}' and '{}' begin at '{}' and '{}'", tips.front().links.tip, tip,
+                                   tips.front().links.base, tips.back().links.base),
+                       "name one link with --base");
+  }
+  return tips;
+}
+
+std::vector<Coordinate> joints_of(const std::vector<InitRobot>& tips) {
+  std::vector<Coordinate> all;
+  for (const InitRobot& tip : tips)
+    for (const Coordinate& c : tip.chain.coordinates)
+      if (std::ranges::find(all, c.name, &Coordinate::name) == all.end()) all.push_back(c);
+  return all;
 }
 
 FileToWrite expanded_robot(const InitFacts& facts, const InitRobot& robot, const fs::path& file) {

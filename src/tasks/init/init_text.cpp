@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <numbers>
+#include <sstream>
 
 #include "posewright/model/placement.hpp"
 #include "posewright/support/json.hpp"
@@ -82,7 +84,33 @@ std::string source_text(const InitFacts& facts, const InitRobot& robot, const st
   return fmt::format("  urdf: {}\n{}", quoted(robot.urdf), xacro.empty() ? "" : "  " + xacro + "\n");
 }
 
-std::string robot_text(const InitFacts& facts, const InitRobot& robot, const std::filesystem::path& expanded) {
+/// Name of a tip and of its instrument: its link, with `_` for what names do not have.
+std::string name_of(const InitRobot& tip) {
+  std::string name = tip.links.tip;
+  for (char& letter : name)
+    if (std::isalnum(static_cast<unsigned char>(letter)) == 0) letter = '_';
+  return name;
+}
+
+/// Several tips of one robot.
+std::string tips_text(const InitFacts& facts, const std::vector<InitRobot>& tips,
+                      const std::filesystem::path& expanded) {
+  std::string joints, names;
+  for (const Coordinate& c : joints_of(tips)) joints += (joints.empty() ? "" : ", ") + c.name;
+  for (const InitRobot& tip : tips)
+    names += fmt::format("{}{}: {}", names.empty() ? "" : ", ", name_of(tip), quoted(tip.links.tip));
+  return fmt::format(
+             "# 1. Robot: the chains from the base to each tip, which are calibrated together. The measurement frame "
+             "is the\n# frame of the base. Joints: {}.\nrobot:\n",
+             joints) +
+         source_text(facts, tips.front(), expanded) +
+         fmt::format("  base: {}\n  tips: {{{}}}\n", quoted(tips.front().links.base), names);
+}
+
+std::string robot_text(const InitFacts& facts, const std::vector<InitRobot>& tips,
+                       const std::filesystem::path& expanded) {
+  if (tips.size() > 1) return tips_text(facts, tips, expanded);
+  const InitRobot& robot = tips.front();
   std::string joints;
   for (const Coordinate& c : robot.chain.coordinates) joints += (joints.empty() ? "" : ", ") + c.name;
   std::string text = fmt::format(
@@ -99,37 +127,45 @@ std::string robot_text(const InitFacts& facts, const InitRobot& robot, const std
   return text + fmt::format("  base: {}\n  tip: {}\n", quoted(robot.links.base), quoted(robot.links.tip));
 }
 
-std::string tracker_text(const InitRobot& robot, const InitPlace& place) {
-  std::string text =
+/// What stands above `measurement`, and its keys.
+struct InstrumentText {
+  std::string comment, keys;
+};
+
+InstrumentText tracker_text(const InitRobot& robot, const InitPlace& place) {
+  InstrumentText text;
+  text.comment =
       "\n# 2. Instrument: a laser tracker that reads three reflectors on the flange at every pose. The reflectors are "
       "not\n"
       "# in line, so that they show its orientation too. Positions to about 10 mm are enough: where they and the "
       "tracker\n"
-      "# are is estimated with the rest. Put in those of your own adapter (frame of the tip).\n"
-      "measurement:\n  type: points\n  targets:\n";
+      "# are is estimated with the rest. Put in those of your own adapter (frame of the tip).\n";
+  text.keys = "  type: points\n  targets:\n";
   const double at[] = {0.3, 2.5, 4.4}, across[] = {1, 1.15, 0.9};  // rad; no symmetry that hides a wrong order
   for (int i = 0; i < 3; ++i)
-    text += fmt::format("    P{}: {}\n", i + 1,
-                        vector(before_flange(robot.outward, across[i] * radius_of_targets, at[i], robot.face + 0.02)));
-  return text +
-         fmt::format(
-             "  # Noise: without a key `noise` that of an interferometer, 2.5 um + 0.075 um/m along the beam, 3.75 "
-             "um + 1.5 um/m across.\n"
-             "  device: {{type: laser_tracker, stations: {{A: {}}}}}   # where it stands, frame of the base\n"
-             "  # What the robot does not repeat, 1 sigma of each axis: a third of the RP of its data sheet (ISO "
-             "9283).\n"
-             "  repeatability: \"30 um\"\n",
-             vector(place.position));
+    text.keys +=
+        fmt::format("    P{}: {}\n", i + 1,
+                    vector(before_flange(robot.outward, across[i] * radius_of_targets, at[i], robot.face + 0.02)));
+  text.keys += fmt::format(
+      "  # Noise: without a key `noise` that of an interferometer, 2.5 um + 0.075 um/m along the beam, 3.75 "
+      "um + 1.5 um/m across.\n"
+      "  device: {{type: laser_tracker, stations: {{A: {}}}}}   # where it stands, frame of the base\n"
+      "  # What the robot does not repeat, 1 sigma of each axis: a third of the RP of its data sheet (ISO "
+      "9283).\n"
+      "  repeatability: \"30 um\"\n",
+      vector(place.position));
+  return text;
 }
 
 /// The board's z goes into it, so it is along the view of a camera that looks straight at it.
-std::string camera_text(const InitFacts& facts, const InitRobot& robot, const InitPlace& place) {
+InstrumentText camera_text(const InitFacts& facts, const InitRobot& robot, const InitPlace& place) {
   const BoardFacts& board = facts.board;
   const Eigen::Vector3d middle(0.5 * (board.columns - 1) * board.spacing, 0.5 * (board.rows - 1) * board.spacing, 0);
-  std::string text = fmt::format(
+  InstrumentText text;
+  text.comment = fmt::format(
       "\n# 2. Instrument: camera {} and a board of {} x {} points. {}\n# Lens: {}.\n# Angles of view {:.1f} x {:.1f} "
       "deg. "
-      "The camera's own calibration knows focal length, centre and distortion better.\nmeasurement:\n  type: camera\n",
+      "The camera's own calibration knows focal length, centre and distortion better.\n",
       facts.lens.name, board.rows, board.columns,
       facts.on_hand                  ? "The camera is on the hand, the board stands in the cell."
       : on_moving_base(facts, robot) ? "The camera rides on the base, the board is on the hand."
@@ -144,23 +180,41 @@ std::string camera_text(const InitFacts& facts, const InitRobot& robot, const In
   const Eigen::Vector3d board_at = facts.on_hand ? place.position - standing * middle : mount - mounted * middle;
   const Eigen::Vector3d camera_rpy = rpy_of(facts.on_hand ? mounted : standing);
   const Eigen::Vector3d board_rpy = rpy_of(facts.on_hand ? standing : mounted);
-  return text + fmt::format(
-                    "  mount: {}\n  camera:\n    focal: [{}, {}]\n    centre: [{:g}, {:g}]\n    size: [{}, {}]\n"
-                    "    distortion: [0, 0, 0, 0, 0]\n"
-                    "    # {}; to some 10 mm and 5 deg is enough.\n    position: {}\n    rpy: {}\n"
-                    "  # From the board's first point columns go along x, rows along y; {}.\n"
-                    "  board: {{rows: {}, columns: {}, spacing: {}, position: {}, rpy: {}}}\n"
-                    "  device: {{type: isotropic, noise: 0.2}}   # px, 1 sigma of a corner, a usual corner finder\n"
-                    "  # What the robot does not repeat, 1 sigma: a third of the RP of its data sheet (ISO 9283).\n"
-                    "  repeatability: {{position: \"30 um\", rotation: \"0.1 mrad\"}}\n",
-                    facts.on_hand ? "hand" : "fixed", facts.lens.focal, facts.lens.focal, 0.5 * facts.lens.width,
-                    0.5 * facts.lens.height, facts.lens.width, facts.lens.height,
-                    facts.on_hand ? "From the tip, z along the view" : "From the base, z along the view",
-                    vector(camera_at), angles(camera_rpy),
-                    !facts.on_hand         ? "it faces away from the flange"
-                    : place.view.z() == -1 ? "it lies face up"
-                                           : "it faces the hand",
-                    board.rows, board.columns, length(board.spacing), vector(board_at), angles(board_rpy));
+  text.keys = fmt::format(
+      "  type: camera\n  mount: {}\n  camera:\n    focal: [{}, {}]\n    centre: [{:g}, {:g}]\n    size: [{}, {}]\n"
+      "    distortion: [0, 0, 0, 0, 0]\n"
+      "    # {}; to some 10 mm and 5 deg is enough.\n    position: {}\n    rpy: {}\n"
+      "  # From the board's first point columns go along x, rows along y; {}.\n"
+      "  board: {{rows: {}, columns: {}, spacing: {}, position: {}, rpy: {}}}\n"
+      "  device: {{type: isotropic, noise: 0.2}}   # px, 1 sigma of a corner, a usual corner finder\n"
+      "  # What the robot does not repeat, 1 sigma: a third of the RP of its data sheet (ISO 9283).\n"
+      "  repeatability: {{position: \"30 um\", rotation: \"0.1 mrad\"}}\n",
+      facts.on_hand ? "hand" : "fixed", facts.lens.focal, facts.lens.focal, 0.5 * facts.lens.width,
+      0.5 * facts.lens.height, facts.lens.width, facts.lens.height,
+      facts.on_hand ? "From the tip, z along the view" : "From the base, z along the view", vector(camera_at),
+      angles(camera_rpy),
+      !facts.on_hand         ? "it faces away from the flange"
+      : place.view.z() == -1 ? "it lies face up"
+                             : "it faces the hand",
+      board.rows, board.columns, length(board.spacing), vector(board_at), angles(board_rpy));
+  return text;
+}
+
+std::string instruments_text(const InitFacts& facts, const std::vector<InitRobot>& tips, const InitPlace& place) {
+  const auto text_of = [&](const InitRobot& tip) {
+    return facts.camera ? camera_text(facts, tip, place) : tracker_text(tip, place);
+  };
+  const InstrumentText first = text_of(tips.front());
+  if (tips.size() == 1) return first.comment + "measurement:\n" + first.keys;
+  std::string text = first.comment +
+                     "# Each tip is read by an instrument of its own; which of them reads a pose is the planner's "
+                     "choice.\nmeasurement:\n";
+  for (const InitRobot& tip : tips) {
+    text += fmt::format("  - name: {0}\n    of: {0}\n", name_of(tip));
+    std::istringstream keys(text_of(tip).keys);
+    for (std::string line; std::getline(keys, line);) text += "  " + line + "\n";
+  }
+  return text;
 }
 
 std::string sight_text(const InitFacts& facts) {
@@ -180,15 +234,13 @@ std::string sight_text(const InitFacts& facts) {
 }
 
 /// The home that motions begin at.
-std::string motion_text(const InitRobot& robot, const InitPlace& place) {
+std::string motion_text(const InitPlace& place) {
   if (place.home.empty()) return {};
   std::string home;
-  for (std::size_t i = 0; i < place.home.size(); ++i) {
-    const Coordinate& c = robot.chain.coordinates[i];
-    home += fmt::format("{}{}: {}", i == 0 ? "" : ", ", quoted(c.name),
-                        c.unit == "rad" ? fmt::format("\"{:g} deg\"", std::round(place.home[i] * in_degrees) + 0.0)
-                                        : length(place.home[i]));
-  }
+  for (const auto& [c, value] : place.home)
+    home += fmt::format(
+        "{}{}: {}", home.empty() ? "" : ", ", quoted(c.name),
+        c.unit == "rad" ? fmt::format("\"{:g} deg\"", std::round(value * in_degrees) + 0.0) : length(value));
   return fmt::format(
       "  motion:\n"
       "    reachable: true                    # only poses that a free motion connects with home\n"
@@ -197,10 +249,10 @@ std::string motion_text(const InitRobot& robot, const InitPlace& place) {
 }
 
 /// Limits of the joints that can turn more than once.
-std::string joints_text(const InitRobot& robot) {
+std::string joints_text(const std::vector<InitRobot>& tips) {
   constexpr double half_turn = std::numbers::pi;
   std::string limits;
-  for (const Coordinate& c : robot.chain.coordinates)
+  for (const Coordinate& c : joints_of(tips))
     if (c.unit == "rad" && c.lower <= -half_turn && c.upper >= half_turn && c.upper - c.lower > 2.01 * half_turn)
       limits += fmt::format("{}{}: [\"-180 deg\", \"180 deg\"]", limits.empty() ? "" : ", ", quoted(c.name));
   if (limits.empty()) return "  joints: {margin: \"3 deg\"}            # kept from both ends of the joints\n";
@@ -240,27 +292,27 @@ std::string floor_text(const InitFacts& facts, const InitRobot& robot, const Ini
                     out ? "# " : "", InitObstacle::floor_name, length(*floor));
 }
 
-std::string cell_text(const InitFacts& facts, const InitRobot& robot, const InitPlace& place) {
+std::string cell_text(const InitFacts& facts, const std::vector<InitRobot>& tips, const InitPlace& place) {
   std::string text =
       "\n# 3. Cell: what a pose must keep off, and what the instrument must see.\n"
       "workspace:\n" +
-      joints_text(robot);
+      joints_text(tips);
   if (place.cell) {
     text +=
         "  collision:                           # links among themselves and with what stands around\n"
         "    clearance: \"30 mm\"\n"
         "    hulls: true                        # meshes as their convex hulls: faster, a little larger\n";
-    text += ignored_text(place) + floor_text(facts, robot, place);
+    text += ignored_text(place) + floor_text(facts, tips.front(), place);
   } else {
     text += fmt::format("  # No collision is checked: {}.\n", place.no_cell);
   }
-  text += motion_text(robot, place);
+  text += motion_text(place);
   if (facts.camera)
     text +=
         "  readable_for: 20                     # the board is in the picture although nobody knows yet where the\n"
         "                                       # camera is: for 20 robots drawn from the tolerances (5 mm and 1 deg\n"
         "                                       # of camera and board, if a variant's `tolerance` says nothing else)\n";
-  return text + sight_text(facts);
+  return tips.size() > 1 ? text : text + sight_text(facts);
 }
 
 /// Parameters that this arm's motions do not separate from the others.
@@ -273,8 +325,27 @@ std::string held_text(const InitPlace& place) {
       names);
 }
 
-std::string variants_text(const InitFacts& facts, const InitPlace& place) {
+/// Of instruments whose parameters have their names.
+std::string variants_of_several(const InitFacts& facts, const InitPlace& place) {
+  if (!facts.camera)
+    return "  geometric:\n"
+           "    parameters: auto                   # an irreducible set of the robot's geometric parameters\n"
+           "    nuisance: [\"base.*\", \"target@*\"]   # estimated too, but of no interest: tracker and reflectors\n";
+  // One camera that all look into has the place of the base; cameras on hands have places of their own.
+  const char* places = facts.on_hand ? "\"camera@*.?\", \"camera@*.r?\"" : "\"base.?\", \"base.r?\"";
+  const char* lens =
+      facts.on_hand ? "\"base.*\", \"camera@*.f?\", \"camera@*.c?\", \"camera@*.k?\", \"camera@*.p?\"" : "\"camera@*\"";
+  return fmt::format(
+      "  hand_eye:                            # where cameras are; the arms are taken as they are\n"
+      "    parameters: [{0}]\n    nuisance: [\"board@*\"]\n{2}"
+      "  hand_eye_and_arm:                    # the arms' geometric parameters too: posewright plan --variant\n"
+      "    parameters: auto\n    nuisance: [\"board@*\", {0}]\n    fixed: [{1}]\n",
+      places, lens, held_text(place));
+}
+
+std::string variants_text(const InitFacts& facts, const InitPlace& place, bool several) {
   std::string text = "\n# 4. Plan: what is to be identified, and by how many poses.\nvariants:\n";
+  if (several) return text + variants_of_several(facts, place);
   if (!facts.camera)
     return text +
            "  geometric:\n"
@@ -334,16 +405,15 @@ std::optional<double> floor_of(const InitFacts& facts, const InitRobot& robot) {
 
 int default_poses(const InitFacts& facts) { return facts.camera && !facts.arm ? 15 : 30; }
 
-std::string init_text(const InitFacts& facts, const InitRobot& robot, const InitPlace& place,
+std::string init_text(const InitFacts& facts, const std::vector<InitRobot>& tips, const InitPlace& place,
                       const std::filesystem::path& expanded) {
   return schema_line(facts.schema) +
          fmt::format(
              "# Made by posewright init for {}: yours to change. Lengths in m and angles in rad where no unit is "
              "written.\nposewright: 1\n\n",
              facts.robot.filename().string()) +
-         robot_text(facts, robot, expanded) +
-         (facts.camera ? camera_text(facts, robot, place) : tracker_text(robot, place)) +
-         cell_text(facts, robot, place) + variants_text(facts, place) + design_text(facts);
+         robot_text(facts, tips, expanded) + instruments_text(facts, tips, place) + cell_text(facts, tips, place) +
+         variants_text(facts, place, tips.size() > 1) + design_text(facts);
 }
 
 }  // namespace posewright

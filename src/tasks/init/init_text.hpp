@@ -30,8 +30,10 @@ struct InitRobot {
   std::shared_ptr<const std::string> expanded{};  ///< by xacro; null: the file is a URDF
 };
 
-/// Facts about the robot of the file. Throws as init_problem().
-InitRobot look_at_robot(const InitFacts& facts, const std::filesystem::path& file);
+/// Facts about the robot of the file as it is to each tip, at least one. Throws as init_problem().
+std::vector<InitRobot> look_at_robot(const InitFacts& facts, const std::filesystem::path& file);
+/// Joints of the ways to all tips, each once.
+std::vector<Coordinate> joints_of(const std::vector<InitRobot>& tips);
 /// Adds `lowest` and `face`. Throws InputError where meshes are missing, and for links that are far larger or smaller
 /// than the arm: a scale is missing or one too many.
 void add_bodies(InitRobot& robot, const Problem& problem);
@@ -55,14 +57,14 @@ struct InitPlace {
   std::vector<std::string> held{};  ///< parameters of the hand-eye variant that no motion separates from the others
   bool cell = true;
   std::string no_cell{};  ///< why there is none
-  /// Collision-free home, one value per joint; empty: no motions are searched.
-  std::vector<double> home{};
+  /// Collision-free home, each joint and its value; empty: no motions are searched.
+  std::vector<std::pair<Coordinate, double>> home{};
   std::vector<InitObstacle> left_out{};  ///< written as comments, or ignored, so that a plan can be made
 };
 
 /// The commented file.
 /// @param expanded  file beside it that xacro made; empty: the robot is named as the user did
-std::string init_text(const InitFacts& facts, const InitRobot& robot, const InitPlace& place,
+std::string init_text(const InitFacts& facts, const std::vector<InitRobot>& tips, const InitPlace& place,
                       const std::filesystem::path& expanded = {});
 
 /// The camera is on a base that joints of the way move.

@@ -155,6 +155,10 @@ class TreeFrames : public BodyFrames {
     return {found->frame, found->X_FrameTip};
   }
 
+  Tip measurement_frame(const std::string& in) const override {
+    return in.empty() ? Tip{tree_.base.frame, tree_.base.X_FrameTip} : tip(in);
+  }
+
   std::vector<Branch> branches() const override {
     std::vector<Branch> all;
     for (const UrdfFrames::Tip& tip : tree_.tips) {

@@ -28,6 +28,12 @@ class BodyFrames {
     (void)name;
     return {count_ - 1, X_FrameTip_};
   }
+  /// Measurement frame.
+  /// @param in  one of several tips; empty: the base
+  virtual Tip measurement_frame(const std::string& in) const {
+    (void)in;
+    return {};
+  }
   /// Frames on the way to a tip, from the first that moves on.
   struct Branch {
     std::vector<int> frames;

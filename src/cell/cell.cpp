@@ -14,15 +14,18 @@ namespace {
 /// An instrument does not stand in a wall. The ways out of its own body are not judged.
 void check_stations(const Problem& problem, const Cell& cell) {
   if (cell.collision == nullptr || !cell.sight_is_asked()) return;
-  const std::vector<double> home = home_configuration(problem.workspace.motion, problem, cell.model->coordinates());
-  for (const auto& sight : cell.sights)
+  std::vector<double> home = home_configuration(problem.workspace.motion, problem, cell.model->coordinates());
+  for (std::size_t k = 0; k < cell.sights.size(); ++k) {
+    const auto& sight = cell.sights[k];
+    if (cell.instrument) home[*cell.instrument] = double(k);
     for (std::size_t s = 0; sight != nullptr && sight->judges() && s < sight->stations().size(); ++s) {
       const std::string& name = sight->stations()[s];
-      const std::string in = cell.collision->inside(home, sight->X_MeasureStation(home, int(s)).translation(), name);
+      const std::string in = cell.collision->inside(home, sight->X_BodiesStation(home, int(s)).translation(), name);
       if (!in.empty())
         throw StationInside(problem.at(sight->line()), "station " + name + " stands inside " + in,
                             "move it, or give its own body the key station: " + name);
     }
+  }
 }
 
 std::vector<std::vector<const LineOfSight*>> looking_for_each(

@@ -230,6 +230,14 @@ bool Collision::blocked(std::span<const double> q, const Eigen::Vector3d& from, 
   return false;
 }
 
+Eigen::Isometry3d Collision::measurement_frame(std::span<const double> q, const std::string& in) const {
+  const BodyFrames::Tip at = scene_->frames->measurement_frame(in);
+  if (at.frame == 0) return at.X_FrameTip;
+  std::vector<Eigen::Isometry3d> X(std::size_t(scene_->frames->count()));
+  scene_->frames->poses(q, 0, X);
+  return X[std::size_t(at.frame)] * at.X_FrameTip;
+}
+
 std::string Collision::inside(std::span<const double> q, const Eigen::Vector3d& point,
                               const std::string& station) const {
   const Poses& X = place_bodies(*scene_, q, 0);

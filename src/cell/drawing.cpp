@@ -166,7 +166,7 @@ Carried Drawing::carried(const MeasurementSpec& measurement, bool on_tip, const 
   BodyFrames::Tip carrier;
   if (arm_ == nullptr) carrier.frame = on_tip ? int(frame_names_.size()) - 1 : 0;
   else if (on_tip) carrier = arm_->tip(measurement.of ? measurement.of->value : "");
-  else if (measurement.in) carrier = arm_->tip(measurement.in->value);
+  else carrier = arm_->measurement_frame(measurement.in ? measurement.in->value : "");
   return {carrier.frame, carrier.X_FrameTip * nominal_placement(model_->parameters(), parameters, isometry(placement))};
 }
 
@@ -191,9 +191,10 @@ void Drawing::add_instrument(const MeasurementSpec& measurement, int index) {
   if (view.image && !view.places.empty() && frame_names_.size() > 1) add_camera(measurement, view);
   // Of one alone they stand in the cell's lines of sight; and a camera is drawn as one.
   if (name.empty() || view.image || view.places_on_tip || measurement.in) return;
-  for (const InstrumentView::Place& place : view.places)
-    stations_.push_back({name, place.station.name,
-                         carried(measurement, false, place.parameters, place.station.placement).X_FrameThing});
+  for (const InstrumentView::Place& place : view.places) {
+    const Carried station = carried(measurement, false, place.parameters, place.station.placement);
+    if (station.frame == 0) stations_.push_back({name, place.station.name, station.X_FrameThing});
+  }
 }
 
 DrawnPose Drawing::at(std::span<const double> q) const {

@@ -84,13 +84,9 @@ std::vector<std::unique_ptr<const LineOfSight>> lines_of_sight(const Problem& pr
     throw InputError(problem.at(asked->line), "workspace.line_of_sight stands beside a list of instruments",
                      "each instrument has its own key line_of_sight");
   for (const MeasurementSpec& one : *instruments) {
-    if (one.line_of_sight && !model.moving_coordinates().empty())
-      throw InputError(problem.at(one.line_of_sight->line), "line_of_sight with several tips",
-                       "base and tip in place of tips");
-    // Those that read together look by the sights of each.
-    sights.push_back(model.moving_coordinates().empty() && members_of(one) == nullptr
-                         ? LineOfSight::make(problem, one, one.line_of_sight, model, collision)
-                         : nullptr);
+    // Those that read together look by the sights of each; with several tips what nobody asks for has no place.
+    const bool looks = members_of(one) == nullptr && (one.line_of_sight || model.moving_coordinates().empty());
+    sights.push_back(looks ? LineOfSight::make(problem, one, one.line_of_sight, model, collision) : nullptr);
   }
   return sights;
 }
@@ -110,6 +106,7 @@ LineOfSight::LineOfSight(const ProblemFile& file, const MeasurementSpec& instrum
     throw InputError(file.at(spec_.line),
                      "workspace.line_of_sight.stations cannot be combined with stations of the device",
                      "stations of trackers belong to measurement.device");
+  if (!model.moving_coordinates().empty()) in_ = instrument.in ? instrument.in->value : "";
   all_stations_ = view.all_places;
   station_on_tip_ = view.places_on_tip;
   half_angle_ = spec_.field_of_view ? spec_.field_of_view : view.half_angle;
@@ -177,6 +174,15 @@ Eigen::Isometry3d LineOfSight::X_MeasureStation(std::span<const double> q, int s
   return station_on_tip_ ? model_.tool_pose(q) * X : X;
 }
 
+/// Of a robot with one tip bodies stand in the measurement frame.
+Eigen::Isometry3d LineOfSight::X_BodiesMeasure(std::span<const double> q) const {
+  return in_ ? collision_->measurement_frame(q, *in_) : Eigen::Isometry3d::Identity();
+}
+
+Eigen::Isometry3d LineOfSight::X_BodiesStation(std::span<const double> q, int station) const {
+  return X_BodiesMeasure(q) * X_MeasureStation(q, station);
+}
+
 int LineOfSight::hidden_by(const Sight& s) const {
   if (outside(spec_.range, s.distance)) return range;
   if (outside(spec_.elevation, s.elevation)) return elevation;
@@ -205,10 +211,13 @@ Sight LineOfSight::sight(std::span<const double> q, const Eigen::Isometry3d& X_M
     s.incidence = std::atan2(n.cross(way).norm(), n.dot(way));
   }
   s.hidden_by = hidden_by(s);
-  if (s.hidden_by < 0 && past_bodies && collision_ != nullptr && s.distance > spec_.target_radius &&
-      collision_->blocked(q, X_Station.translation(), p + way.normalized() * (spec_.target_radius + spec_.beam),
-                          spec_.beam, station_names_[std::size_t(station)]))
-    s.hidden_by = occluded;
+  if (s.hidden_by < 0 && past_bodies && collision_ != nullptr && s.distance > spec_.target_radius) {
+    const Eigen::Isometry3d X = X_BodiesMeasure(q);
+    const Eigen::Vector3d front = p + way.normalized() * (spec_.target_radius + spec_.beam);
+    if (collision_->blocked(q, X * X_Station.translation(), X * front, spec_.beam,
+                            station_names_[std::size_t(station)]))
+      s.hidden_by = occluded;
+  }
   if (s.hidden_by >= 0) s.hidden_by += station * reason_count;
   return s;
 }

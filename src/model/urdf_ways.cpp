@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "posewright/model/placement.hpp"
 #include "posewright/model/urdf_reader.hpp"
 #include "posewright/problem/ways.hpp"
 #include "urdf_document.hpp"
@@ -97,6 +98,8 @@ UrdfFrames read_urdf_frames(const SerialArmSpec& arm, const SourcePlace& place) 
     add(way.of);
     if (way.in) add(*way.in);
   }
+  if (arm.base) result.base = place_of(*urdf.tree().link(arm.base->value));
+  result.base.X_FrameTip = result.base.X_FrameTip * isometry(arm.placement).inverse();
   return result;
 }
 

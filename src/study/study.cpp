@@ -250,7 +250,9 @@ std::function<std::unique_ptr<ConfigurationSpace>(const Eigen::MatrixXd& R)> spa
     const Spacing& spacing) {
   const bool with_effects = find_criterion(criterion)->needs_truth;
   // An effect that is assumed says too little for moves between candidates; moves of single joints open a loop.
-  if (!study.list.empty() || study.first().workspace->closure() != nullptr || (with_effects && study.discrepancy == nullptr)) return {};
+  if (!study.list.empty() || study.first().workspace->closure() != nullptr ||
+      (with_effects && study.discrepancy == nullptr))
+    return {};
   return [&study, with_effects, &candidates, known, &spacing](const Eigen::MatrixXd& R) {
     std::vector<SpacePart> parts;
     for (const Variant& v : study.variants)

@@ -156,8 +156,7 @@ class Workspace::Implementation {
     space->setStateValidityCheckingResolution(0.04);
     space->setup();
     reasons = checker->reasons();
-    if (cell != nullptr && cell->sight() != nullptr && cell->sight()->can_propose())
-      views = std::make_unique<ViewSampler>(model, *cell->sight(), proposed);
+    if (cell != nullptr) views = ViewSampler::make(model, *cell, proposed);
     closure = Closure::make(model, problem.measurement, proposed);
     choose_samplers(problem.workspace, problem);
   }

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "posewright/cell/cell.hpp"
 #include "posewright/model/model_factory.hpp"
 #include "posewright/support/random.hpp"
@@ -64,6 +67,48 @@ TEST_F(TreeCell, HasObstaclesInTheRootAndToolsOnTheirTips) {
   }
   EXPECT_GT(hit, 300);
   EXPECT_GT(free, 300);
+}
+
+TEST_F(TreeCell, BodiesHideATargetWhereverTipsCarryStationAndTarget) {
+  constexpr double beam = 0.01, target_radius = 0.02;
+  const Eigen::Vector3d station(0.02, -0.03, 0.06), target(0.15, 0.1, 0.0);
+  std::string words = text("no");
+  const std::string before = words.substr(words.find("  - {name: to_right"),
+                                          words.find("  - {name: tracker") - words.find("  - {name: to_right"));
+  words.replace(words.find(before), before.size(),
+                "  - {name: to_right, type: points, of: right, in: eye, targets: {P: [0.15, 0.1, 0]}, device: {type: "
+                "isotropic, noise: 0.2 mm, stations: {E: [0.02, -0.03, 0.06]}}, line_of_sight: {range: [0.1, 5], beam: "
+                "10 mm, target_radius: 20 mm}}\n");
+  const ThreeTips three(words);
+  const auto cell = make_cell(three.problem);
+  Random random(5, 0);
+  int hidden = 0, seen = 0;
+  for (int i = 0; i < 3000; ++i) {
+    std::vector<double> q = drawn(*cell, random);
+    q.back() = 1;
+    const std::map<std::string, double> joints = joints_of(cell->model->coordinates(), q);
+    const Eigen::Vector3d from = three.plain.pose("eye", joints) * station,
+                          at = three.plain.pose("rh", joints) * target;
+    const Eigen::Vector3d to = at + (from - at).normalized() * (target_radius + beam);
+    // Room of the beam beside balls, and the floor.
+    double spare = std::min(from.z(), to.z()) - 0.2 - beam;
+    auto bodies = balls(three, *cell, q);
+    bodies.emplace_back("root", Eigen::Vector3d::Zero());
+    bodies.emplace_back("ball", ball);
+    for (const auto& [name, p] : bodies) {
+      const Eigen::Vector3d way = to - from;
+      const double share = std::clamp(way.dot(p - from) / way.squaredNorm(), 0.0, 1.0);
+      spare = std::min(
+          spare, (from + share * way - p).norm() - beam - (name == "root" || name == "ball" ? 0.1 : radius(name)));
+    }
+    if (std::abs(spare) < 1e-4 || (from - at).norm() < 0.1) continue;
+    const auto& sights = cell->sights_at(q);
+    ASSERT_EQ(sights.size(), 1U);
+    EXPECT_EQ(sights.front()->violation(q) >= 0, spare < 0) << i << ": " << spare;
+    (spare < 0 ? hidden : seen) += 1;
+  }
+  EXPECT_GT(hidden, 200);
+  EXPECT_GT(seen, 300);
 }
 
 TEST_F(TreeCell, KeepsOffOnTheWholeWay) {

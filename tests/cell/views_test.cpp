@@ -99,14 +99,15 @@ TEST(Views, AreReachedByTheJointsThatAreReturned) {
   const Site s(
       camera("fixed", "position: [3.2, 0, 1.2], rpy: [0, -90 deg, 0]", "position: [0.2, 0, 0], rpy: [0, 90 deg, 0]"),
       "line_of_sight: {range: [0.6, 2], acceptance: 50 deg, normals: {\"*\": [0, 0, 1]}}");
-  const ViewSampler views(*s.variant.model, *s.cell->sight(), s.variant.workspace->proposed());
+  const auto views = ViewSampler::make(*s.variant.model, *s.cell, s.variant.workspace->proposed());
+  ASSERT_NE(views, nullptr);
   int reached = 0, seen = 0;
   for (std::uint64_t i = 0; i < 400; ++i) {
     Random first(3, i), again(3, i);
     std::vector<double> q = s.anywhere(first);
     s.anywhere(again);
     const Isometry3d wanted = s.cell->sight()->propose_tip(q, again);
-    if (!views.move_to_view(q, first)) continue;
+    if (!views->move_to_view(q, first)) continue;
     ++reached;
     const Isometry3d X = s.variant.model->tool_pose(q);
     EXPECT_LT((X.translation() - wanted.translation()).norm(), 6e-3);

@@ -128,7 +128,7 @@ const BadFile measurements[] = {
      "camera, joints"},
     {"MeasurementKindMissing", arm, "  type: points\n", "", 9, "measurement has no key 'type'"},
     {"TargetsForPose", arm, "type: points", "type: pose", 11,
-     "unknown key 'targets'; allowed: type, name, of, in, mount, components, device, repeats, repeatability, "
+     "unknown key 'targets'; allowed: type, name, of, in, mount, components, joined, device, repeats, repeatability, "
      "line_of_sight, most, reading, setup, load"},
     {"TargetsForPosition", arm, "type: points", "type: position", 11,
      "unknown key 'targets' (did you mean 'target'?); allowed: type, name, of, in, target,"},

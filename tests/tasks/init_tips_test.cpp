@@ -73,7 +73,8 @@ TEST(InitTips, ACameraInTheHeadIsInOnePlaceForBothBoards) {
   std::vector<std::string> names;
   for (const auto& parameter : seen.parameters)
     if (parameter.role == Role::interest) names.push_back(parameter.name);
-  EXPECT_THAT(names, UnorderedElementsAre("base.x", "base.y", "base.z", "base.rx", "base.ry", "base.rz"));
+  EXPECT_THAT(names, UnorderedElementsAre("base@head_camera.x", "base@head_camera.y", "base@head_camera.z",
+                                          "base@head_camera.rx", "base@head_camera.ry", "base@head_camera.rz"));
 }
 
 TEST(InitTips, TipsThatAreNoTwoChainsOfOneRobotAreRefused) {

@@ -74,7 +74,10 @@ class Collision {
   /// True if a body other than those of `station` comes nearer than `radius` to the segment at the first pose of q.
   bool blocked(std::span<const double> q, const Eigen::Vector3d& from, const Eigen::Vector3d& to, double radius,
                const std::string& station) const;
-  /// Name of a body, other than those of `station`, that a point (measurement frame) is in at q; empty: none.
+  /// Measurement frame of an instrument in the frame that bodies stand in: they differ for robots with several tips.
+  /// @param in  tip that carries it; empty: the base
+  Eigen::Isometry3d measurement_frame(std::span<const double> q, const std::string& in) const;
+  /// Name of a body, other than those of `station`, that a point (frame of the bodies) is in at q; empty: none.
   std::string inside(std::span<const double> q, const Eigen::Vector3d& point, const std::string& station) const;
 
   /// Bodies as drawn: name, pose at q, corners; for tests and reports.

@@ -72,6 +72,8 @@ class LineOfSight : public Visibility {
   std::vector<Sight> reference_sights(std::span<const double> q, int station) const;
 
   Eigen::Isometry3d X_MeasureStation(std::span<const double> q, int station) const;
+  /// Its pose in the frame that bodies stand in; only with `collision`.
+  Eigen::Isometry3d X_BodiesStation(std::span<const double> q, int station) const;
 
   /// True if propose_tip() is better than random draws: an instrument with an axis, or targets with a front.
   bool can_propose() const;
@@ -107,6 +109,7 @@ class LineOfSight : public Visibility {
   Sight sight(std::span<const double> q, const Eigen::Isometry3d& X_MeasureTip, int station, const Target& target,
               bool on_tip, bool past_bodies) const;
   int hidden_by(const Sight& sight) const;
+  Eigen::Isometry3d X_BodiesMeasure(std::span<const double> q) const;
   void take_necessary_places();
   void add_limits_of(const Place& place, NecessaryLimits& limits) const;
   Bundle bundle() const;
@@ -128,7 +131,8 @@ class LineOfSight : public Visibility {
   bool judges_ = false;
   bool station_on_tip_ = false, targets_on_tip_ = true, all_stations_ = false;
   int station_coordinate_ = -1;
-  std::uint64_t number_ = 0;  // among all that the program made
+  std::optional<std::string> in_{};  // tip that carries the measurement frame, of a robot with several
+  std::uint64_t number_ = 0;         // among all that the program made
 };
 
 /// Lines of sight of the problem's instrument, or of each in its list; null where LineOfSight::make() gives none, and

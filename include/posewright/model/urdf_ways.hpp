@@ -44,6 +44,7 @@ struct UrdfFrames {
   std::vector<int> parents;        ///< frame that carries the joint; 0: the root
   std::vector<Coordinate> coordinates;
   std::vector<Tip> tips;  ///< of all ways, each once
+  Tip base;               ///< measurement frame of ways that begin in no tip
 };
 UrdfFrames read_urdf_frames(const SerialArmSpec& arm, const SourcePlace& place);
 

@@ -31,7 +31,7 @@ struct InitFacts {
   Packages packages;
   std::string base;
   std::vector<std::string> tips;  ///< one: found if empty; several: each is read by an instrument of its own
-  bool camera = false;  ///< else a laser tracker
+  bool camera = false;            ///< else a laser tracker
   KnownCamera lens;
   BoardFacts board;
   bool on_hand = true;                   ///< the camera; else the board is
@@ -62,8 +62,8 @@ struct InitResult {
 /// configuration collides, the floor or the pair of links that does so most is left out, with a note and a comment.
 /// Samples make the problem of samples_problem(); of the facts, only a fixed camera counts then.
 /// @param file  where the text will be: paths in it are relative to its folder
-/// Throws InputError as propose_chain(), for several tips that are not told apart, and for numbers out of range; CannotDo where no pose is feasible from any
-/// place.
+/// Throws InputError as propose_chain(), for several tips that are not told apart, and for numbers out of range;
+/// CannotDo where no pose is feasible from any place.
 InitResult init_problem(const InitFacts& facts, const std::filesystem::path& file, const Monitor& monitor);
 
 }  // namespace posewright

@@ -85,11 +85,10 @@ std::string source_text(const InitFacts& facts, const InitRobot& robot, const st
 }
 
 /// Name of a tip and of its instrument: its link, with `_` for what names do not have.
-std::string name_of(const InitRobot& tip) {
-  std::string name = tip.links.tip;
-  for (char& letter : name)
+std::string name_of(std::string link) {
+  for (char& letter : link)
     if (std::isalnum(static_cast<unsigned char>(letter)) == 0) letter = '_';
-  return name;
+  return link;
 }
 
 /// Several tips of one robot.
@@ -97,14 +96,18 @@ std::string tips_text(const InitFacts& facts, const std::vector<InitRobot>& tips
                       const std::filesystem::path& expanded) {
   std::string joints, names;
   for (const Coordinate& c : joints_of(tips)) joints += (joints.empty() ? "" : ", ") + c.name;
-  for (const InitRobot& tip : tips)
-    names += fmt::format("{}{}: {}", names.empty() ? "" : ", ", name_of(tip), quoted(tip.links.tip));
-  return fmt::format(
-             "# 1. Robot: the chains from the base to each tip, which are calibrated together. The measurement frame "
-             "is the\n# frame of the base. Joints: {}.\nrobot:\n",
-             joints) +
-         source_text(facts, tips.front(), expanded) +
-         fmt::format("  base: {}\n  tips: {{{}}}\n", quoted(tips.front().links.base), names);
+  const auto add = [&](const std::string& link) {
+    names += fmt::format("{}{}: {}", names.empty() ? "" : ", ", name_of(link), quoted(link));
+  };
+  const InitRobot& first = tips.front();
+  for (const InitRobot& tip : tips) add(tip.links.tip);
+  // A link that carries the camera is a tip, too: the base stays the robot's.
+  const bool rides = on_moving_base(facts, first);
+  if (rides) add(first.links.base);
+  return fmt::format("# 1. Robot: the chains to each tip, which are calibrated together.\n# Joints: {}.\nrobot:\n",
+                     joints) +
+         source_text(facts, first, expanded) + (rides ? "" : fmt::format("  base: {}\n", quoted(first.links.base))) +
+         fmt::format("  tips: {{{}}}\n", names);
 }
 
 std::string robot_text(const InitFacts& facts, const std::vector<InitRobot>& tips,
@@ -200,6 +203,27 @@ InstrumentText camera_text(const InitFacts& facts, const InitRobot& robot, const
   return text;
 }
 
+/// @param of_list  of an instrument of a list, which must see all its targets
+std::string sight_text(const InitFacts& facts, bool of_list) {
+  const char* some =
+      of_list ? ""
+              : "    visible: 2                         # of the three; a hidden one counts for nothing at that pose\n";
+  if (!facts.camera)
+    return fmt::format(
+        "  line_of_sight:\n{}"
+        "    range: [\"0.8 m\", \"30 m\"]\n"
+        "    # If nobody turns the reflectors towards the tracker at each pose, say where they face:\n"
+        "    # acceptance: \"30 deg\"\n    # normals: {{\"*\": [0, 0, 1]}}\n",
+        some);
+  const auto [nearest, farthest] = sight_range(facts);
+  return fmt::format(
+      "  line_of_sight:\n"
+      "    range: [{}, {}]   # from where the board fills the image to where a corner finder still finds it\n"
+      "    acceptance: \"45 deg\"                # more obliquely corners are hard to find\n"
+      "    normals: {{\"*\": [0, 0, -1]}}          # the side of the board that the points are on\n",
+      length(std::round(nearest * 100) / 100), length(std::round(farthest * 100) / 100));
+}
+
 std::string instruments_text(const InitFacts& facts, const std::vector<InitRobot>& tips, const InitPlace& place) {
   const auto text_of = [&](const InitRobot& tip) {
     return facts.camera ? camera_text(facts, tip, place) : tracker_text(tip, place);
@@ -210,27 +234,13 @@ std::string instruments_text(const InitFacts& facts, const std::vector<InitRobot
                      "# Each tip is read by an instrument of its own; which of them reads a pose is the planner's "
                      "choice.\nmeasurement:\n";
   for (const InitRobot& tip : tips) {
-    text += fmt::format("  - name: {0}\n    of: {0}\n", name_of(tip));
-    std::istringstream keys(text_of(tip).keys);
+    text += fmt::format("  - name: {0}\n    of: {0}\n", name_of(tip.links.tip));
+    if (on_moving_base(facts, tip))
+      text += fmt::format("    in: {}   # the measurement frame moves with it\n", name_of(tip.links.base));
+    std::istringstream keys(text_of(tip).keys + sight_text(facts, true));
     for (std::string line; std::getline(keys, line);) text += "  " + line + "\n";
   }
   return text;
-}
-
-std::string sight_text(const InitFacts& facts) {
-  if (!facts.camera)
-    return "  line_of_sight:\n"
-           "    visible: 2                         # of the three; a hidden one counts for nothing at that pose\n"
-           "    range: [\"0.8 m\", \"30 m\"]\n"
-           "    # If nobody turns the reflectors towards the tracker at each pose, say where they face:\n"
-           "    # acceptance: \"30 deg\"\n    # normals: {\"*\": [0, 0, 1]}\n";
-  const auto [nearest, farthest] = sight_range(facts);
-  return fmt::format(
-      "  line_of_sight:\n"
-      "    range: [{}, {}]   # from where the board fills the image to where a corner finder still finds it\n"
-      "    acceptance: \"45 deg\"                # more obliquely corners are hard to find\n"
-      "    normals: {{\"*\": [0, 0, -1]}}          # the side of the board that the points are on\n",
-      length(std::round(nearest * 100) / 100), length(std::round(farthest * 100) / 100));
 }
 
 /// The home that motions begin at.
@@ -312,7 +322,7 @@ std::string cell_text(const InitFacts& facts, const std::vector<InitRobot>& tips
         "  readable_for: 20                     # the board is in the picture although nobody knows yet where the\n"
         "                                       # camera is: for 20 robots drawn from the tolerances (5 mm and 1 deg\n"
         "                                       # of camera and board, if a variant's `tolerance` says nothing else)\n";
-  return tips.size() > 1 ? text : text + sight_text(facts);
+  return tips.size() > 1 ? text : text + sight_text(facts, false);
 }
 
 /// Parameters that this arm's motions do not separate from the others.
@@ -326,13 +336,16 @@ std::string held_text(const InitPlace& place) {
 }
 
 /// Of instruments whose parameters have their names.
-std::string variants_of_several(const InitFacts& facts, const InitPlace& place) {
+/// @param tip  one of the tips
+std::string variants_of_several(const InitFacts& facts, const InitRobot& tip, const InitPlace& place) {
   if (!facts.camera)
     return "  geometric:\n"
            "    parameters: auto                   # an irreducible set of the robot's geometric parameters\n"
            "    nuisance: [\"base.*\", \"target@*\"]   # estimated too, but of no interest: tracker and reflectors\n";
   // One camera that all look into has the place of the base; cameras on hands have places of their own.
-  const char* places = facts.on_hand ? "\"camera@*.?\", \"camera@*.r?\"" : "\"base.?\", \"base.r?\"";
+  const std::string base = on_moving_base(facts, tip) ? "base@" + name_of(tip.links.base) : "base";
+  const std::string places =
+      facts.on_hand ? "\"camera@*.?\", \"camera@*.r?\"" : fmt::format("\"{0}.?\", \"{0}.r?\"", base);
   const char* lens =
       facts.on_hand ? "\"base.*\", \"camera@*.f?\", \"camera@*.c?\", \"camera@*.k?\", \"camera@*.p?\"" : "\"camera@*\"";
   return fmt::format(
@@ -343,9 +356,9 @@ std::string variants_of_several(const InitFacts& facts, const InitPlace& place) 
       places, lens, held_text(place));
 }
 
-std::string variants_text(const InitFacts& facts, const InitPlace& place, bool several) {
+std::string variants_text(const InitFacts& facts, const std::vector<InitRobot>& tips, const InitPlace& place) {
   std::string text = "\n# 4. Plan: what is to be identified, and by how many poses.\nvariants:\n";
-  if (several) return text + variants_of_several(facts, place);
+  if (tips.size() > 1) return text + variants_of_several(facts, tips.front(), place);
   if (!facts.camera)
     return text +
            "  geometric:\n"
@@ -413,7 +426,7 @@ std::string init_text(const InitFacts& facts, const std::vector<InitRobot>& tips
              "written.\nposewright: 1\n\n",
              facts.robot.filename().string()) +
          robot_text(facts, tips, expanded) + instruments_text(facts, tips, place) + cell_text(facts, tips, place) +
-         variants_text(facts, place, tips.size() > 1) + design_text(facts);
+         variants_text(facts, tips, place) + design_text(facts);
 }
 
 }  // namespace posewright

@@ -95,7 +95,8 @@ struct Tried {
 }  // namespace
 
 SmoothEffect smooth_effect(const IdentificationModel& model, const VariantColumns& columns,
-                           const std::vector<MeasuredPose>& poses, const Fit& fit, std::optional<double> length) {
+                           const std::vector<MeasuredPose>& poses, const Fit& fit, std::optional<double> length,
+                           const std::vector<double>& own_sizes) {
   SmoothEffect result;
   // Some of very many, as a fit of these alone.
   std::vector<MeasuredPose> list;
@@ -125,19 +126,32 @@ SmoothEffect smooth_effect(const IdentificationModel& model, const VariantColumn
     for (int k = 0; k < 3; ++k) selected.push_back(model.tip_column(tip, k));
   const FittedRows linear = fitted_rows(model, selected, list, fit.correction, some);
   const auto own = Eigen::Index(columns.selected.size());
-  const ResidualProjector fitted(linear.J.leftCols(own));
   const Eigen::MatrixXd A = linear.J.rightCols(linear.J.cols() - own);
-  const Eigen::VectorXd r = fitted.left(linear.r);
   std::vector<Tried> tried;
+  double squares = 0;
   for (const double l : lengths) {
+    Eigen::MatrixXd J = linear.J.leftCols(own), r = linear.r;
+    std::optional<IndependentRows> beside;
+    if (!own_sizes.empty()) {
+      const auto of_instruments =
+          std::make_shared<UnmodelledEffect>(model, UnmodelledSize{1.0, 0.0, l, own_sizes, false});
+      const Eigen::MatrixXd places = places_of(*of_instruments, list);
+      beside.emplace(effect_columns({of_instruments, places, int(places.cols())}, places, A, linear.first));
+      beside->apply(J);
+      beside->apply(r);
+    }
+    const ResidualProjector fitted(J);
+    r = fitted.left(r);
+    squares = r.squaredNorm();
     const auto effect = std::make_shared<UnmodelledEffect>(model, UnmodelledSize{1.0, 0.0, l});
     const Eigen::MatrixXd places = places_of(*effect, list);
     const EffectFeatures features(effect, places, int(places.cols()));
     Eigen::MatrixXd F = effect_columns(features, places, A, linear.first);
+    if (beside) beside->apply(F);
     F = fitted.left(F);
     // In units in which an effect of size one is as large as the noise.
     const double unit = std::sqrt(double(F.rows()) / std::max(F.squaredNorm(), 1e-300));
-    const Restricted likelihood(F * unit, r, own);
+    const Restricted likelihood(F * unit, r.col(0), own);
     const double best = likelihood.best();
     tried.push_back({likelihood, l, unit, best, likelihood.minus_two_log(best)});
   }
@@ -161,7 +175,7 @@ SmoothEffect smooth_effect(const IdentificationModel& model, const VariantColumn
   result.probability = std::min(1.0, 0.5 * double(lengths.size()) * chi_square_exceeded(result.statistic, 1));
   if (!(result.statistic > 1e-6)) {
     result.size = result.lower = 0.0;
-    result.noise = std::sqrt(r.squaredNorm() / left);
+    result.noise = std::sqrt(squares / left);
     result.probability = 1.0;
   }
   return result;

@@ -28,12 +28,15 @@ UnmodelledEffect::UnmodelledEffect(const IdentificationModel& model, const Unmod
     const bool turns = c.unit == "rad";
     if (turns || c.upper > c.lower) axes_.push_back({i, turns, turns ? 1.0 : std::numbers::pi / (c.upper - c.lower)});
   }
+  for (const double own : size.own) own_.push_back(std::pow(own / size.translation, 2));
   for (int tip = 0; tip < tips_; ++tip)
     for (int k = 0; k < twists(); ++k) columns_.push_back(model.tip_column(tip, k));
 }
 
 Eigen::VectorXd UnmodelledEffect::place(std::span<const double> q) const {
-  Eigen::VectorXd f = Eigen::VectorXd::Zero(2 * Eigen::Index(axes_.size()));
+  // With effects of instruments the last one is the instrument, −1 for none.
+  Eigen::VectorXd f = Eigen::VectorXd::Zero(2 * Eigen::Index(axes_.size()) + (own_.empty() ? 0 : 1));
+  if (!own_.empty()) f.tail<1>()[0] = -1;
   const std::vector<char>* moving = moving_.empty() ? nullptr : &moving_[std::size_t(q.back())];
   for (std::size_t a = 0; a < axes_.size(); ++a) {
     if (moving != nullptr && (*moving)[axes_[a].coordinate] == 0) continue;
@@ -45,20 +48,28 @@ Eigen::VectorXd UnmodelledEffect::place(std::span<const double> q) const {
 }
 
 Eigen::MatrixXd UnmodelledEffect::places(std::span<const double> q) const {
-  Eigen::MatrixXd f(2 * Eigen::Index(axes_.size()), tips_);
+  Eigen::MatrixXd f(2 * Eigen::Index(axes_.size()) + (own_.empty() ? 0 : 1), tips_);
   for (int tip = 0; tip < tips_; ++tip)
     f.col(tip) = place(moving_.empty() ? q.subspan(std::size_t(tip) * coordinates_, coordinates_) : q);
+  if (!own_.empty()) f.bottomRows<1>().setConstant(q.back());
   return f;
 }
 
 double UnmodelledEffect::correlation(Eigen::Ref<const Eigen::VectorXd> a, Eigen::Ref<const Eigen::VectorXd> b) const {
-  return std::exp(-0.5 * (a - b).squaredNorm() / (size_.length * size_.length));
+  const auto smooth = [&](Eigen::Index rows) {
+    return std::exp(-0.5 * (a - b).head(rows).squaredNorm() / (size_.length * size_.length));
+  };
+  if (own_.empty()) return smooth(a.size());
+  const double reads = a[a.size() - 1];
+  const double own = reads >= 0 && reads == b[b.size() - 1] ? own_[std::size_t(reads)] : 0.0;
+  return ((size_.of_robot ? 1.0 : 0.0) + own) * smooth(a.size() - 1);
 }
 
 EffectFeatures::EffectFeatures(std::shared_ptr<const UnmodelledEffect> effect, const Eigen::MatrixXd& places, int most)
     : effect_(std::move(effect)) {
   const Eigen::Index n = places.cols();
-  Eigen::VectorXd rest = Eigen::VectorXd::Ones(n);
+  Eigen::VectorXd rest(n);
+  for (Eigen::Index i = 0; i < n; ++i) rest[i] = effect_->correlation(places.col(i), places.col(i));
   Eigen::MatrixXd rows(std::min<Eigen::Index>(most, n), n);  // φ of every place
   std::vector<Eigen::Index> chosen;
   while (Eigen::Index(chosen.size()) < rows.rows()) {

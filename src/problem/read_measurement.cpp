@@ -184,7 +184,8 @@ Repeatability read_repeatability(const Value& value, const std::string& type) {
 void allow_instrument(const Section& section, std::initializer_list<std::string_view> own) {
   std::vector<std::string_view> keys{"type", "name", "of", "in"};
   keys.insert(keys.end(), own.begin(), own.end());
-  keys.insert(keys.end(), {"device", "repeats", "repeatability", "line_of_sight", "most", "reading", "setup", "load"});
+  keys.insert(keys.end(), {"device", "repeats", "repeatability", "line_of_sight", "most", "reading", "setup",
+                           "unmodelled", "load"});
   section.allow(keys);
 }
 
@@ -260,6 +261,8 @@ MeasurementSpec read_instrument(const Section& section) {
     measurement.repeats = repeats->integer(1, std::numeric_limits<int>::max());
   if (const Value* repeatability = section.find("repeatability"))
     measurement.repeatability = read_repeatability(*repeatability, type);
+  if (const Value* unmodelled = section.find("unmodelled"))
+    measurement.unmodelled = unmodelled->number(Quantity::length, Sign::positive);
   if (const Value* sight = section.find("line_of_sight")) measurement.line_of_sight = read_line_of_sight(*sight);
   read_limits(section, measurement);
   if (const Value* load = section.find("load"))
@@ -328,6 +331,8 @@ MeasurementSpec read_together(const Section& section, const std::vector<Measurem
       item.fail("is " + in_quotes(name) + meant_instead(name, names), allowed);
     if (std::ranges::find(together.members, name, &MeasurementSpec::name) != together.members.end())
       item.fail("is " + in_quotes(name) + " once more", allowed);
+    if (found->unmodelled > 0)
+      item.fail("has an unmodelled effect of its own", "instruments that read together have none");
     if (!together.members.empty()) require_common(item, together.members.front(), *found);
     together.members.push_back(*found);
   }
@@ -370,7 +375,8 @@ MeasurementSpec read_measurement(const Value& value) {
     constexpr std::pair<const char*, const char*> elsewhere[] = {{"line_of_sight", "workspace: line_of_sight"},
                                                                  {"most", "design: poses"},
                                                                  {"reading", "workspace: motion: reading"},
-                                                                 {"setup", "workspace: motion: station_change"}};
+                                                                 {"setup", "workspace: motion: station_change"},
+                                                                 {"unmodelled", "unmodelled of a variant"}};
     for (const auto& [key, one] : elsewhere)
       if (const Value* found = section.find(key))
         found->fail("is for an instrument of a list", std::string("of one alone: ") + one);

@@ -23,6 +23,18 @@ void require_known_version(const yaml::Section& root) {
   if (text != "1") version.fail("is " + in_quotes(text), "the only known schema version is 1");
 }
 
+/// What instruments are off by counts beside what the robot is.
+void require_unmodelled_variant(const Problem& problem) {
+  if (std::ranges::any_of(problem.variants, [](const VariantSpec& one) { return one.unmodelled.has_value(); })) return;
+  const auto* list = instruments_of(problem.measurement);
+  if (list == nullptr) return;
+  for (const MeasurementSpec& one : *list)
+    if (one.unmodelled > 0)
+      throw InputError(problem.at(one.line),
+                       "unmodelled of '" + one.name + "' stands beside no unmodelled of a variant",
+                       "unmodelled: auto in variants");
+}
+
 bool is_below(const std::string& key, const std::string& other) { return key.starts_with(other + "."); }
 
 /// Each key once with its last value, at its first place: a command that repeats a key of its plan has the plan's
@@ -78,6 +90,7 @@ Problem parse_problem(const std::string& text, const fs::path& file, const Packa
   problem.variants = read_variants(root.at("variants"));
   if (const yaml::Value* workspace = root.find("workspace"))
     problem.workspace = read_workspace(*workspace, problem.robot, file.parent_path());
+  require_unmodelled_variant(problem);
   read_ways(root, problem);
   if (std::holds_alternative<GivenPosesSpec>(problem.robot) && problem.workspace.limits.empty())
     robot.fail("with poses alone has no limits", "workspace: pose: {x: [0.3, 0.7], …, roll: [150 deg, 210 deg], …}");

@@ -201,6 +201,7 @@ void allow_for_unmodelled(const Configurations& candidates, int threads, Variant
   size.translation = spec.size          ? *spec.size
                      : found != nullptr ? found->size
                                         : size_by_tolerances(variant, sample, threads);
+  size.own = own_effects(variant.problem->measurement);
   variant.effect = std::make_shared<UnmodelledEffect>(*variant.model, size);
   variant.features = enough_features(variant, candidates, threads);
 }

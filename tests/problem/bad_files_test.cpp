@@ -129,7 +129,7 @@ const BadFile measurements[] = {
     {"MeasurementKindMissing", arm, "  type: points\n", "", 9, "measurement has no key 'type'"},
     {"TargetsForPose", arm, "type: points", "type: pose", 11,
      "unknown key 'targets'; allowed: type, name, of, in, mount, components, joined, device, repeats, repeatability, "
-     "line_of_sight, most, reading, setup, load"},
+     "line_of_sight, most, reading, setup, unmodelled, load"},
     {"TargetsForPosition", arm, "type: points", "type: position", 11,
      "unknown key 'targets' (did you mean 'target'?); allowed: type, name, of, in, target,"},
     {"TargetTwice", arm, "    P2:", "    P1:", 13, "duplicate key 'P1'; first given on line 12"},

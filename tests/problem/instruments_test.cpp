@@ -92,6 +92,16 @@ const Bad bad_instruments[] = {
      "[{name: a, type: points, targets: {T: [0, 0, 0]}, device: {type: laser_tracker, stations: {A: [1, 0, 0], B: [2, "
      "0, 0]}}}]",
      "has several stations in a list of instruments; one station each"},
+    {"UnmodelledBesideNone",
+     "[{name: a, type: position, target: [0, 0, 0], unmodelled: 1 mm, device: {type: isotropic, noise: 1}}]",
+     "unmodelled of 'a' stands beside no unmodelled of a variant; unmodelled: auto in variants"},
+    {"UnmodelledTogether",
+     "[{name: a, type: position, target: [0, 0, 0], unmodelled: 1 mm, device: {type: isotropic, noise: 1}}, {name: b, "
+     "type: position, target: [0, 0, 0], device: {type: isotropic, noise: 1}}, {name: c, together: [a, b]}]",
+     "has an unmodelled effect of its own; instruments that read together have none"},
+    {"UnmodelledOfOneInstrument",
+     "{type: position, target: [0, 0, 0], unmodelled: 1 mm, device: {type: isotropic, noise: 1}}",
+     "is for an instrument of a list"},
     {"JoinedTipsOnTheHand",
      "{type: pose, mount: hand, joined: yes, device: {type: isotropic, noise: {position: 1, rotation: 1}}}",
      "is hand with joined tips; tips have no instrument: fixed"},

@@ -27,9 +27,11 @@ struct SmoothEffect {
 /// readings' noise are free, ℓ is sought over lengths from 15 to 160 deg, or given. τ = 0 is on the edge, so the
 /// likelihood ratio is half of χ² of one degree (Self & Liang 1987), times the lengths that were tried. Of more than
 /// 150 poses that many, evenly through the list.
+/// Effects of instruments are known, and counted as noise beside it.
 /// Lengths: the tip's displacement is taken as common to all readings of a pose and smooth between poses.
+/// @param own  UnmodelledSize::own
 SmoothEffect smooth_effect(const IdentificationModel& model, const VariantColumns& columns,
                            const std::vector<MeasuredPose>& poses, const Fit& fit,
-                           std::optional<double> length = std::nullopt);
+                           std::optional<double> length = std::nullopt, const std::vector<double>& own = {});
 
 }  // namespace posewright

@@ -16,6 +16,11 @@ struct UnmodelledSize {
   double translation = 0.0;  ///< 1σ along each axis, m
   double rotation = 0.0;     ///< 1σ about each axis through the tip, rad
   double length = 0.0;       ///< over which it changes, in angles of joints, rad
+  /// What readings of each instrument of a list are off by for themselves, 1σ along each axis, m (about the axes in the
+  /// ratio of the above); empty: by nothing. It does not move the robot.
+  std::vector<double> own{};
+  /// False: the robot has no effect, readings are off by `own` alone; the above are its units then.
+  bool of_robot = true;
   /// Default length: joint differences over which an unmodelled effect stays about equal.
   static constexpr double assumed_length = std::numbers::pi / 3;
 };
@@ -23,6 +28,7 @@ struct UnmodelledSize {
 /// Every model lacks something: the tip stands off by a twist δ(q) that changes smoothly with the configuration,
 /// δ ~ GP(0, diag(τ² I, τ_r² I) ⊗ k), k(q, q') = exp(−‖f(q) − f(q')‖²/2ℓ²), f = (cos q_j, sin q_j) of angles,
 /// π q_j/range of lengths, 0 of joints that do not move the tip that is read; load cases and stations do not change it.
+/// Readings of an instrument k with an effect of its own have τ² + τ_k² in place of τ² among themselves.
 /// Repeatability is the same without smoothness: a twist that is drawn anew at every visit (docs/theory.md).
 class UnmodelledEffect {
  public:
@@ -45,9 +51,9 @@ class UnmodelledEffect {
     for (Eigen::Index c = 0; c < along.cols(); ++c) along.col(c) *= size_of(int(c) % twists());
   }
 
-  /// f of every tip, one a column.
+  /// f of every tip whose place is read, one a column.
   Eigen::MatrixXd places(std::span<const double> q) const;
-  /// Overload for a robot at q, its own coordinates alone; where instruments see different tips, all of them.
+  /// f of a robot that nobody reads at q, its own coordinates alone; where instruments see different tips, all of them.
   Eigen::VectorXd place(std::span<const double> q) const;
   /// k of two places.
   double correlation(Eigen::Ref<const Eigen::VectorXd> a, Eigen::Ref<const Eigen::VectorXd> b) const;
@@ -62,6 +68,7 @@ class UnmodelledEffect {
   int tips_;
   std::size_t coordinates_;  // of one tip
   std::vector<std::vector<char>> moving_;
+  std::vector<double> own_;  // (τ_k/τ)² of each instrument
   std::vector<Axis> axes_;
   std::vector<int> columns_;
 };

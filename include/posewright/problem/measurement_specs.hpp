@@ -171,6 +171,9 @@ struct MeasurementSpec {
   std::optional<LineOfSightSpec> line_of_sight{};  ///< of an instrument of a list; of one alone the workspace has it
   double noise_factor = 1.0;  ///< of an instrument of a list: its noise is so many times as stated, by measured data
   std::optional<int> most{};  ///< poses that it may read; none: as many as are planned
+  /// Of an instrument of a list: 1σ along each axis of a smooth displacement in its readings that other instruments do
+  /// not have, m.
+  double unmodelled = 0.0;
   std::optional<double> reading{}, setup{};  ///< s, as MotionSpec::reading and station_change, which count without
   bool loaded_minus_unloaded = false;        ///< differences between each load case and the first one, at the same pose
   int line = 0;
@@ -183,6 +186,15 @@ struct MeasurementSpec {
 inline const std::vector<MeasurementSpec>* instruments_of(const MeasurementSpec& measurement) {
   const auto* list = std::get_if<InstrumentList>(&measurement.instrument);
   return list == nullptr ? nullptr : &list->instruments;
+}
+
+/// MeasurementSpec::unmodelled of all instruments of a list; empty if none has one.
+inline std::vector<double> own_effects(const MeasurementSpec& measurement) {
+  std::vector<double> all;
+  const auto* list = instruments_of(measurement);
+  if (list == nullptr) return all;
+  for (const MeasurementSpec& one : *list) all.push_back(one.unmodelled);
+  return std::any_of(all.begin(), all.end(), [](double size) { return size > 0; }) ? all : std::vector<double>{};
 }
 
 /// True if a joint keeps two tips together (PoseMeasurement::joined): configurations that close the loop are a part of

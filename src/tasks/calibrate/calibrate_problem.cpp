@@ -160,7 +160,9 @@ class CalibrationRun {
 
   /// Instruments of a list whose residuals show a larger noise than stated count with that.
   void count_instrument_noise(FitOptions options) {
-    if (options.weighting != Weighting::weighted) return;
+    // Effects that instruments are known to have are in what they show, and count later.
+    if (options.weighting != Weighting::weighted || (spec_.unmodelled && !own_effects(problem_.measurement).empty()))
+      return;
     for (int round = 0; round < most_rounds; ++round) {
       const InstrumentNoise noise = instrument_noise(*model_, columns_, fitted_, result_.fit, result_.prior);
       if (!noise.shown()) return;
@@ -346,7 +348,8 @@ class CalibrationRun {
       result_.smooth.why_not = "weights are not those of the noise";
       return;
     }
-    result_.smooth = smooth_effect(*model_, columns_, fitted_, result_.fit, spec ? spec->length : std::nullopt);
+    const std::vector<double> own = spec ? own_effects(problem_.measurement) : std::vector<double>{};
+    result_.smooth = smooth_effect(*model_, columns_, fitted_, result_.fit, spec ? spec->length : std::nullopt, own);
     const SmoothEffect& found = result_.smooth;
     if (spec == nullptr) return;
     if (!spec->size && !found.why_not.empty()) {
@@ -358,11 +361,16 @@ class CalibrationRun {
     const double size = spec->size.value_or(found.size / std::max(1.0, found.noise));
     const double length =
         spec->length.value_or(found.why_not.empty() && found.size > 0 ? found.length : UnmodelledSize::assumed_length);
-    if (!(size > 0)) return;
-    options.effect = std::make_shared<UnmodelledEffect>(*model_, UnmodelledSize{size, spec->rotation, length});
+    if (!(size > 0) && own.empty()) return;
+    UnmodelledSize counted{size, spec->rotation, length, own};
+    if (!(size > 0)) {
+      counted.translation = 1.0;
+      counted.of_robot = false;
+    }
+    options.effect = std::make_shared<UnmodelledEffect>(*model_, counted);
     options.start = result_.fit.correction;
     result_.fit = fit(*model_, columns_, fitted_, options);
-    result_.counted = {size, length};
+    if (size > 0) result_.counted = {size, length};
   }
 
   /// Residuals interpolated between the poses.

@@ -80,7 +80,8 @@ std::optional<ExpectedError> calibrated_error(const ProblemVariant& fitted, cons
   none.dimension = int(variant.workspace->coordinates().size());
   if (found.counted)
     variant.effect = std::make_shared<UnmodelledEffect>(
-        *variant.model, UnmodelledSize{found.counted->size, fitted.spec.unmodelled->rotation, found.counted->length});
+        *variant.model, UnmodelledSize{found.counted->size, fitted.spec.unmodelled->rotation, found.counted->length,
+                                       own_effects(variant.problem->measurement)});
   ErrorsToExpect errors(places, variant, poses, none, 0);
   const Eigen::MatrixXd covariance = fit.covariance / (fit.noise_factor * fit.noise_factor);
   errors.take_size_of(fitted_residuals(fit), covariance);

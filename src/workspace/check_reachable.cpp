@@ -12,6 +12,12 @@ constexpr std::uint64_t roadmap_seed = 31415;
 // Milestones that a pose is tried with, nearest first.
 constexpr std::size_t tries = 8;
 
+/// Of this thread: the milestone from which a motion led to a pose last.
+std::size_t& last_milestone() {
+  static thread_local std::size_t last = 0;
+  return last;
+}
+
 /// A straight motion leads to the part of a roadmap that home belongs to. A pose that none is found for may still be
 /// reachable by a way that the roadmap does not know: the check errs on the safe side.
 class ReachableCheck : public SingleCheck {
@@ -36,8 +42,8 @@ class ReachableCheck : public SingleCheck {
     for (std::size_t i = 0; i < milestones_.size(); ++i) near.emplace_back(space_.distance(at, milestones_[i]), i);
     const std::size_t count = std::min(tries, near.size());
     std::partial_sort(near.begin(), near.begin() + std::ptrdiff_t(count), near.end());
-    // The one that led to the pose asked for before, which is often near.
-    static thread_local std::size_t last = 0;
+    // The one that led to the pose asked for before is often near.
+    std::size_t& last = last_milestone();
     if (const auto known = std::find_if(near.begin(), near.begin() + std::ptrdiff_t(count),
                                         [](const auto& n) { return n.second == last; });
         known != near.begin() + std::ptrdiff_t(count))

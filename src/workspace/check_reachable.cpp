@@ -45,7 +45,7 @@ class ReachableCheck : public SingleCheck {
     // The one that led to the pose asked for before is often near.
     std::size_t& last = last_milestone();
     if (const auto known = std::find_if(near.begin(), near.begin() + std::ptrdiff_t(count),
-                                        [](const auto& n) { return n.second == last; });
+                                        [last](const auto& n) { return n.second == last; });
         known != near.begin() + std::ptrdiff_t(count))
       std::rotate(near.begin(), known, known + 1);
     return std::any_of(near.begin(), near.begin() + std::ptrdiff_t(count), [&](const auto& n) {

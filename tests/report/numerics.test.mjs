@@ -13,6 +13,7 @@ import {
 } from '../../report/src/numerics/packed.js';
 import { PlanFigures } from '../../report/src/numerics/plan_figures.js';
 import { cameraOf } from '../../report/src/view/camera_lines.js';
+import { movement } from '../../report/src/view/extent.js';
 import { composed } from '../../report/src/view/kinematics.js';
 import { between, exaggerated } from '../../report/src/view/interpolate.js';
 import { amplification, amplified, largestDeviation } from '../../report/src/numerics/leg_points.js';
@@ -245,4 +246,10 @@ test('a camera reads where it is named and where it reads with others', () => {
   assert.equal(cameraOf([one, other], 'tracker'), undefined);
   const alone = /** @type {any} */ ({});
   assert.equal(cameraOf([alone], undefined), alone);
+});
+
+test('joints count as movement where the tip stands still', () => {
+  const stop = (x) => ({ tip: [0, 0, 0, 0, 0, 0, 1], lines: [[[0, 0, 0], [x, 0, 0]], [[0, 0, x / 2]]] });
+  near(movement([stop(-1), stop(3)]), 2);
+  near(movement([stop(1), stop(1)]), 1e-6);
 });

@@ -82,3 +82,14 @@ export function sceneExtent(report) {
 
 /** @param {import('../types.js').Keyframe[]} stops @returns {Extent} of the tip alone */
 export const tipExtent = (stops) => extentOf(stops.map((s) => s.tip.slice(0, 3)));
+
+/**
+ * Radius in which the tip or a joint moves, whichever moves most: joined tips stay where they are, and the arms move.
+ * @param {import('../types.js').Keyframe[]} stops at least one
+ */
+export function movement(stops) {
+  const joints = stops[0].lines.flatMap((line, i) =>
+    line.map((_, j) => extentOf(stops.flatMap((k) => (k.lines[i]?.[j] ? [k.lines[i][j]] : []))).radius),
+  );
+  return Math.max(tipExtent(stops).radius, ...joints);
+}

@@ -1,5 +1,5 @@
 import { exaggerated, middleOf } from './interpolate.js';
-import { bodyCorners, extentOf, sceneExtent, tipExtent } from './extent.js';
+import { bodyCorners, extentOf, movement, sceneExtent, tipExtent } from './extent.js';
 
 /**
  * What a view shows at one moment.
@@ -41,7 +41,7 @@ export class Picture {
   /** 1, or a round number where nothing would be seen to move. */
   #suggestedFactor() {
     if (this.stops.length < 2) return 1;
-    const moving = tipExtent(this.stops).radius,
+    const moving = movement(this.stops),
       all = sceneExtent(this.report).radius;
     if (!(moving > 0) || moving > smallMovement * all) return 1;
     const wanted = (3 * smallMovement * all) / moving;

@@ -64,6 +64,10 @@ class Workspace {
   bool samplers_are_given() const;
   /// Proposes configurations from which the instrument sees; null for an instrument that sees from everywhere.
   const ViewSampler* views() const;
+  /// Name of all that makes it what it is: robot, variant, cell, contents of their files. Empty, as at first: not
+  /// known.
+  const std::string& identity() const;
+  void identify(std::string identity);
   /// State space and validity checker for OMPL's own algorithms; isValid() of a state is violation() < 0.
   const std::shared_ptr<ompl::base::SpaceInformation>& space_information() const;
   /// True if q lies on the boundary of the feasible set: a coordinate within 1e-6 of its range from where it may be

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """Commands that people wait for: CPU seconds of whole processes, two programs in turn, medians.
 
-    bench/pairs.py BEFORE AFTER [--rows report,help] [--times 2] [--robots ROBOTS]
+    bench/pairs.py BEFORE AFTER [--rows report,help] [--times 2] [--robots ROBOTS] [--kept]
 
 Each row runs BEFORE, AFTER, BEFORE, AFTER, … on the same files, which AFTER prepares. ROBOTS has the makers' robots of
 examples/cells/README.md; rows that need them are left out without. Prints a row of a Markdown table for each, with the
 peak memory of AFTER and one figure of the result of both: log det, a share of the best, bytes of a page.
+Candidates are drawn anew; with --kept each row runs once before, so AFTER finds those that it kept.
 """
 
 import argparse
@@ -161,6 +162,7 @@ def main():
     parser.add_argument("--rows", default="", help="beginnings of names, with commas; all")
     parser.add_argument("--times", type=int, default=2)
     parser.add_argument("--robots", type=pathlib.Path)
+    parser.add_argument("--kept", action="store_true")
     arguments = parser.parse_args()
     wanted = tuple(arguments.rows.split(",")) if arguments.rows else ("",)
     programs = [arguments.before.resolve(), arguments.after.resolve()]
@@ -169,11 +171,14 @@ def main():
         folder = pathlib.Path(name)
         robots = arguments.robots.resolve() if arguments.robots else None
         prepare(folder, robots)
+        os.environ["POSEWRIGHT_CACHE"] = str(folder / "kept") if arguments.kept else "off"
         for title, make in rows(programs[1], folder, robots).items():
             if not title.startswith(wanted):
                 continue
             words, figure = make()
             seconds, results = [[], []], [None, None]
+            if arguments.kept:
+                run(programs[1], words, folder)
             for _ in range(arguments.times):
                 for k, program in enumerate(programs):
                     cpu, memory, text = run(program, words, folder)

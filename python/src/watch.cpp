@@ -24,6 +24,7 @@ Watch::Watch(std::optional<double> time_limit, py::object progress) : progress_(
   if (!progress_.is_none() && !PyCallable_Check(progress_.ptr()))
     throw py::type_error("progress must be a function of one argument, or None");
   monitor_.interrupted = &stop_;
+  if (const std::filesystem::path folder = cache_folder(); !folder.empty()) monitor_.store = &store_.emplace(folder);
   if (time_limit) {
     if (!(*time_limit > 0) || !(*time_limit < 1e9))
       throw InputError({}, "time_limit is " + std::to_string(*time_limit), "a number of seconds above 0 is allowed");

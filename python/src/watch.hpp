@@ -8,6 +8,7 @@
 #include <string>
 
 #include "posewright/support/monitor.hpp"
+#include "posewright/support/result_store.hpp"
 
 namespace posewright::python {
 
@@ -34,6 +35,7 @@ class Watch {
   void look_for_signals();
   void finish(const std::exception_ptr& error, OnInterrupt on_interrupt);
 
+  std::optional<FolderStore> store_;
   Monitor monitor_;
   py::object progress_;
   std::atomic<bool> stop_{false};

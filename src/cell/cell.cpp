@@ -6,7 +6,10 @@
 #include "posewright/model/model_factory.hpp"
 #include "posewright/model/pair_names.hpp"
 #include "posewright/model/variant_columns.hpp"
+#include "posewright/problem/structure.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/support/file.hpp"
+#include "posewright/support/sha256.hpp"
 
 namespace posewright {
 namespace {
@@ -106,6 +109,7 @@ std::vector<double> home_configuration(const MotionSpec& motion, const ProblemFi
 }
 
 std::shared_ptr<const Cell> make_cell(const Problem& problem, const Cell* same_robot) {
+  const ReadDigest read;
   auto cell = std::make_shared<Cell>();
   const ProblemVariant variant{problem, find_variant(problem, "")};
   cell->model = make_model(variant);
@@ -118,6 +122,10 @@ std::shared_ptr<const Cell> make_cell(const Problem& problem, const Cell* same_r
   cell->joint_margin = joint_margins(variant, *cell->model);
   if (problem.workspace.collision) check_body_stations(*problem.workspace.collision, problem, *cell);
   check_stations(problem, *cell);
+  const std::string files = read.hex();
+  const bool known = !files.empty() && (same_robot == nullptr || !same_robot->identity.empty());
+  if (known)
+    cell->identity = sha256_hex(structure_of(problem) + files + (same_robot == nullptr ? "" : same_robot->identity));
   return cell;
 }
 

@@ -54,6 +54,7 @@ struct CommonOptions {
   std::uint64_t seed = 0;
   int threads = 0;
   bool json = false, quiet = false, verbose = false;
+  bool cache = true;  ///< candidates of earlier commands may be taken
 };
 po::options_description common_options();
 CommonOptions common_values(const po::variables_map& values);

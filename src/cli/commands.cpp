@@ -18,6 +18,7 @@ po::options_description common_options() {
   options.add_options()                                                           //
       ("seed", text("S"), "seed of all random numbers (0)")                       //
       ("threads", text("T"), "number of threads (all); does not change results")  //
+      ("no-cache", "draw candidates anew, and keep none for later commands")      //
       ("json", "print the result as JSON, and nothing else, to stdout")           //
       ("markdown", "tables as Markdown")                                          //
       ("quiet", "do not show progress")                                           //
@@ -30,6 +31,7 @@ CommonOptions common_values(const po::variables_map& values) {
   CommonOptions common;
   common.json = values.count("json") > 0;
   common.quiet = values.count("quiet") > 0;
+  common.cache = values.count("no-cache") == 0;
   common.verbose = values.count("verbose") > 0;
   common.threads = whole_number(values, "threads", 1, 4096).value_or(0);
   const std::string seed = text_of(values, "seed");

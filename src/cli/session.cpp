@@ -15,6 +15,8 @@ Watch::Watch(const CommonOptions& common, double seconds, TaskEngine* engine)
   begin_stage(SignalStage::searching);
   monitor_.interrupted = &interrupted_flag();
   monitor_.engine = engine;
+  if (const std::filesystem::path folder = cache_folder(); common.cache && !folder.empty())
+    monitor_.store = &store_.emplace(folder);
   if (seconds > 0) monitor_.end_within(seconds);
   if (!common.quiet && (common.verbose || ::isatty(STDERR_FILENO) != 0))
     monitor_.on_progress = [this](const Progress& progress) { show(progress); };

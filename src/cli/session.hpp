@@ -7,6 +7,7 @@
 
 #include "command.hpp"
 #include "posewright/support/monitor.hpp"
+#include "posewright/support/result_store.hpp"
 
 namespace posewright::cli {
 
@@ -26,6 +27,7 @@ class Watch {
 
  private:
   void show(const Progress& progress);
+  std::optional<FolderStore> store_;
   Monitor monitor_;
   Monitor::Clock::time_point begin_, last_, stage_begin_;
   std::string stage_;

@@ -16,9 +16,9 @@ namespace posewright::cli {
 namespace {
 
 // They change how a result is made, shown or kept, and not the result.
-constexpr auto of_no_account =
-    std::to_array<std::string_view>({"threads", "json", "markdown", "quiet", "verbose", "output", "output-dir",
-                                     "poses-csv", "force", "resume", "shard", "time-limit", "data", "positional"});
+constexpr auto of_no_account = std::to_array<std::string_view>(
+    {"threads", "json", "markdown", "quiet", "verbose", "no-cache", "output", "output-dir", "poses-csv", "force",
+     "resume", "shard", "time-limit", "data", "positional"});
 
 /// Identity of the computation: command, options and all files read.
 std::string computation(const po::variables_map& values, const std::string& command, const std::filesystem::path& log) {

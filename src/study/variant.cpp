@@ -5,8 +5,11 @@
 
 #include "posewright/cell/line_of_sight.hpp"
 #include "posewright/model/model_factory.hpp"
+#include "posewright/problem/structure.hpp"
 #include "posewright/study/columns.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/support/file.hpp"
+#include "posewright/support/sha256.hpp"
 
 namespace posewright {
 namespace {
@@ -45,6 +48,7 @@ std::vector<std::vector<double>> robots_to_read(const Variant& variant) {
 }  // namespace
 
 Variant place_variant(const ProblemVariant& of, const std::shared_ptr<const Cell>& cell, const Monitor& monitor) {
+  const ReadDigest read;
   Variant variant{&of.problem, &of.spec, cell, make_model(of), nullptr};
   // Instruments of a list must see all their targets.
   if (cell != nullptr && cell->sight() != nullptr && cell->sight()->judges()) {
@@ -54,6 +58,9 @@ Variant place_variant(const ProblemVariant& of, const std::shared_ptr<const Cell
     variant.model->set_visibility({cell, cell->sight()});
   }
   variant.workspace = std::make_unique<Workspace>(*variant.model, of.problem, cell, monitor, robots_to_read(variant));
+  if (const std::string files = read.hex(); !files.empty() && (cell == nullptr || !cell->identity.empty()))
+    variant.workspace->identify(
+        sha256_hex(structure_of(of.problem) + structure_of(of.spec) + files + (cell == nullptr ? "" : cell->identity)));
   return variant;
 }
 

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <limits>
 #include <mutex>
 
 #include "posewright/support/error.hpp"
+#include "posewright/support/sha256.hpp"
 
 namespace posewright {
 namespace fs = std::filesystem;
@@ -15,6 +17,7 @@ namespace {
 struct InputRecord {
   std::mutex mutex;
   std::vector<fs::path> files;
+  std::vector<ReadDigest*> digests;  // that live
 };
 
 InputRecord& input_record() {
@@ -53,11 +56,57 @@ std::string bytes_of(const fs::path& file, std::uintmax_t limit) {
   return bytes;
 }
 
+void record_name(const fs::path& file) {
+  std::error_code code;
+  fs::path name = fs::canonical(file, code);
+  if (code) return;
+  InputRecord& record = input_record();
+  const std::lock_guard lock(record.mutex);
+  if (std::find(record.files.begin(), record.files.end(), name) == record.files.end())
+    record.files.push_back(std::move(name));
+}
+
+bool somebody_digests() {
+  InputRecord& record = input_record();
+  const std::lock_guard lock(record.mutex);
+  return !record.digests.empty();
+}
+
 }  // namespace
+
+/// @param bytes  null: they are not known
+void note_read(const fs::path& file, const std::string* bytes) {
+  if (!somebody_digests()) return;
+  const std::string hash = bytes == nullptr ? "" : sha256_hex(*bytes);
+  InputRecord& record = input_record();
+  const std::lock_guard lock(record.mutex);
+  for (ReadDigest* digest : record.digests) {
+    digest->known_ = digest->known_ && bytes != nullptr;
+    digest->files_ += hash + file.filename().string() + '\n';
+  }
+}
+
+ReadDigest::ReadDigest() {
+  InputRecord& record = input_record();
+  const std::lock_guard lock(record.mutex);
+  record.digests.push_back(this);
+}
+
+ReadDigest::~ReadDigest() {
+  InputRecord& record = input_record();
+  const std::lock_guard lock(record.mutex);
+  std::erase(record.digests, this);
+}
+
+std::string ReadDigest::hex() const {
+  const std::lock_guard lock(input_record().mutex);
+  return known_ ? sha256_hex(files_) : "";
+}
 
 std::string read_file(const fs::path& file, std::uintmax_t limit) {
   std::string bytes = bytes_of(file, limit);
-  record_input(file);
+  record_name(file);
+  note_read(file, &bytes);
   return bytes;
 }
 
@@ -65,7 +114,9 @@ std::string read_file_to_replace(const fs::path& file, std::uintmax_t limit) {
   std::error_code code;
   if (fs::exists(file, code) && !fs::is_regular_file(file, code))
     throw InputError({file.string(), 0}, "is not an ordinary file", "a file that can be written anew");
-  return bytes_of(file, limit);
+  std::string bytes = bytes_of(file, limit);
+  note_read(file, &bytes);
+  return bytes;
 }
 
 FileReader::FileReader(const fs::path& file) : file_(file) {
@@ -76,7 +127,8 @@ FileReader::FileReader(const fs::path& file) : file_(file) {
   if (!in_) throw InputError(place, std::string("cannot be read: ") + std::strerror(errno), "");
   size_ = fs::file_size(file, code);
   if (code) throw InputError(place, "is not an ordinary file", "a file is needed");
-  record_input(file);
+  record_name(file);
+  note_read(file, nullptr);
 }
 
 std::size_t FileReader::read(char* to, std::size_t count) {
@@ -94,13 +146,10 @@ std::vector<fs::path> files_read() {
 }
 
 void record_input(const fs::path& file) {
-  std::error_code code;
-  fs::path name = fs::canonical(file, code);
-  if (code) return;
-  InputRecord& record = input_record();
-  const std::lock_guard lock(record.mutex);
-  if (std::find(record.files.begin(), record.files.end(), name) == record.files.end())
-    record.files.push_back(std::move(name));
+  record_name(file);
+  if (!somebody_digests()) return;
+  const std::string bytes = bytes_of(file, std::numeric_limits<std::uintmax_t>::max());
+  note_read(file, &bytes);
 }
 
 }  // namespace posewright

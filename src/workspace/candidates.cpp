@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kept_draws.hpp"
 #include "posewright/model/whitening.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/parallel.hpp"
+#include "posewright/support/result_store.hpp"
 #include "sampler.hpp"
 
 namespace posewright {
@@ -25,10 +27,8 @@ std::vector<std::pair<SamplerKind, double>> shares_of(const Workspace& workspace
   return {{Kind::look_at, 3}, {Kind::boundary, 2}};
 }
 
-}  // namespace
-
-Configurations sample_configurations(const Workspace& workspace, const SamplingOptions& options,
-                                     const Monitor& monitor) {
+Configurations drawn_configurations(const Workspace& workspace, const SamplingOptions& options,
+                                    const Monitor& monitor) {
   Sampler sampler(workspace, options);
   const auto shares = shares_of(workspace, sampler);
   double open_share = 0;
@@ -48,6 +48,20 @@ Configurations sample_configurations(const Workspace& workspace, const SamplingO
   }
   sampler.fill_up(options.count, monitor);
   return sampler.take();
+}
+
+}  // namespace
+
+Configurations sample_configurations(const Workspace& workspace, const SamplingOptions& options,
+                                     const Monitor& monitor) {
+  const std::string name = monitor.store == nullptr ? "" : name_of_draw(workspace, options);
+  if (name.empty()) return drawn_configurations(workspace, options, monitor);
+  if (const auto bytes = monitor.store->find(name))
+    if (auto kept = kept_configurations(*bytes, workspace)) return std::move(*kept);
+  Configurations drawn = drawn_configurations(workspace, options, monitor);
+  // A draw that was stopped has less than its name says.
+  if (!monitor.should_stop()) monitor.store->keep(name, bytes_of(drawn));
+  return drawn;
 }
 
 namespace {

@@ -193,6 +193,7 @@ class Workspace::Implementation {
   bool samplers_are_given = false;
   std::unique_ptr<ViewSampler> views;
   std::unique_ptr<Closure> closure;
+  std::string identity;
 };
 
 Workspace::Workspace(const IdentificationModel& model, const Problem& problem, std::shared_ptr<const Cell> cell,
@@ -214,6 +215,8 @@ bool Workspace::samplers_are_given() const { return implementation_->samplers_ar
 const ViewSampler* Workspace::views() const { return implementation_->views.get(); }
 const Closure* Workspace::closure() const { return implementation_->closure.get(); }
 bool Workspace::cut_by_cell() const { return implementation_->cut_by_cell(); }
+const std::string& Workspace::identity() const { return implementation_->identity; }
+void Workspace::identify(std::string identity) { implementation_->identity = std::move(identity); }
 const Cell* Workspace::cell() const { return implementation_->cell.get(); }
 const std::shared_ptr<ompl::base::SpaceInformation>& Workspace::space_information() const {
   return implementation_->space;

@@ -26,6 +26,8 @@ struct Cell {
   /// Deviation of an uncalibrated robot from its readings, per coordinate's name (rad or m): kept from
   /// its limits beside the margin.
   std::map<std::string, double> joint_margin;
+  /// The same for two cells only if all that they are made of is, with the contents of files; empty: not known.
+  std::string identity;
 
   /// Index of the instrument that reads at q.
   std::size_t instrument_at(std::span<const double> q) const { return instrument ? std::size_t(q[*instrument]) : 0; }

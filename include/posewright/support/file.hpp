@@ -33,8 +33,25 @@ class FileReader {
 
 /// Files that read_file(), FileReader and record_input() have met in this process, as they are called on the disk.
 std::vector<std::filesystem::path> files_read();
-/// For files that a library reads.
+/// For files that a library reads, before it does.
 void record_input(const std::filesystem::path& file);
+
+/// Digest of the files that this process reads while it lives, in any thread: their names without folders, and their
+/// bytes, in the order of reading.
+class ReadDigest {
+ public:
+  ReadDigest();
+  ~ReadDigest();
+  ReadDigest(const ReadDigest&) = delete;
+  ReadDigest& operator=(const ReadDigest&) = delete;
+  /// Of what was read so far; empty: of a file that was read in parts nothing is known.
+  std::string hex() const;
+
+ private:
+  friend void note_read(const std::filesystem::path& file, const std::string* bytes);
+  std::string files_;
+  bool known_ = true;
+};
 
 /// Target of a name: links are followed, even one without target. Throws CannotDo for a circle of links.
 std::filesystem::path followed(std::filesystem::path file);

@@ -10,6 +10,7 @@
 
 namespace posewright {
 
+class ResultStore;
 class TaskEngine;
 
 /// Progress of a long computation.
@@ -21,7 +22,8 @@ struct Progress {
   std::optional<double> efficiency;  ///< lower bound of the efficiency of `best`, in (0, 1]
 };
 
-/// The one channel between a long computation and its caller: progress out, stop and helping hands in. Safe from
+/// The one channel between a long computation and its caller: progress out; stop, helping hands and results of
+/// earlier computations in. Safe from
 /// several threads.
 class Monitor {
  public:
@@ -33,12 +35,14 @@ class Monitor {
   /// Engine of the tasks of run_tasks(); null: this process's threads. A computation inside a task has a monitor of its
   /// own, without one.
   TaskEngine* engine = nullptr;
+  const ResultStore* store = nullptr;  ///< of drawn candidates; null: each computation draws its own
 
   /// Stops where the other does, with the same helping hands; progress is its own.
   void follow(const Monitor& other) {
     interrupted = other.interrupted;
     deadline = other.deadline;
     engine = other.engine;
+    store = other.store;
   }
   /// Not after so many seconds from now.
   void end_within(double seconds) {

@@ -67,6 +67,10 @@ class Workspace {
   const ViewSampler* views() const;
   /// Moves q to where joined tips meet; null if no tips are joined, and any configuration within the limits is one.
   const Closure* closure() const;
+  /// Name of all that makes it what it is: robot, variant, cell, contents of their files. Empty, as at first: not
+  /// known.
+  const std::string& identity() const;
+  void identify(std::string identity);
   /// State space and validity checker for OMPL's own algorithms; isValid() of a state is violation() < 0.
   const std::shared_ptr<ompl::base::SpaceInformation>& space_information() const;
   /// True if q lies on the boundary of the feasible set: a coordinate within 1e-6 of its range from where it may be

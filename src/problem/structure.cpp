@@ -60,7 +60,7 @@ constexpr int members<TrackerNoise> = 4;
 template <>
 constexpr int members<StationSpec> = 2;
 template <>
-constexpr int members<PoseMeasurement> = 5;
+constexpr int members<PoseMeasurement> = 6;
 template <>
 constexpr int members<PointsMeasurement> = 4;
 template <>
@@ -84,7 +84,7 @@ constexpr int members<TogetherMeasurement> = 1;
 template <>
 constexpr int members<Repeatability> = 3;
 template <>
-constexpr int members<MeasurementSpec> = 13;
+constexpr int members<MeasurementSpec> = 14;
 template <>
 constexpr int members<BoxShape> = 1;
 template <>

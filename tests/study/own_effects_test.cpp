@@ -17,7 +17,7 @@
 #include "tests/kit/pose_lists.hpp"
 #include "tests/kit/temporary_folder.hpp"
 
-namespace posewright {
+namespace posewright::own_effects_test {
 namespace {
 
 using List = std::vector<std::vector<double>>;
@@ -145,4 +145,4 @@ TEST_F(OwnEffects, CalibrationIsByTheCovarianceOfAllReadingsAndItsIntervalsCover
 }
 
 }  // namespace
-}  // namespace posewright
+}  // namespace posewright::own_effects_test

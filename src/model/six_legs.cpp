@@ -35,7 +35,34 @@ constexpr std::array<Entry, 9> slide_entries = {ax, ay, az, bx, by, bz, ux, uy, 
 constexpr std::array<Entry, 7> extend_entries = {ax, ay, az, bx, by, bz, length};
 constexpr std::array<const char*, 9> entry_names = {"ax", "ay", "az", "bx", "by", "bz", "ux", "uy", "l"};
 
-double farthest(const TaylorModel& f) { return std::max(std::abs(f.lower()), std::abs(f.upper())); }
+using BoxValues = TaylorModel::Values;
+
+/// Nothing, so many times.
+std::vector<TaylorModel> unknown_models(std::size_t count) {
+  TaylorModel unknown;
+  for (std::size_t box = 0; box < TaylorModel::boxes; ++box) unknown.put_unknown(box);
+  return std::vector<TaylorModel>(count, unknown);
+}
+
+/// The larger of the two on each box.
+void take_larger(BoxValues& largest, const BoxValues& other) {
+  for (std::size_t box = 0; box < largest.size(); ++box) largest[box] = std::max(largest[box], other[box]);
+}
+
+/// Boxes on which each image is inside its tube about a middle, and the tube narrow enough to say something.
+std::array<bool, TaylorModel::boxes> are_inside(const std::vector<TaylorModel>& images,
+                                                const std::vector<TaylorModel>& middles,
+                                                const std::vector<TaylorModel>& tubes) {
+  std::array<bool, TaylorModel::boxes> inside;
+  inside.fill(true);
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    // The farthest of the image from the middle of the tube.
+    const BoxValues away = (images[i] - middles[i].with_radius(0.0)).farthest();
+    for (std::size_t box = 0; box < inside.size(); ++box)
+      inside[box] = inside[box] && tubes[i].known(box) && away[box] <= tubes[i].radius(box);
+  }
+  return inside;
+}
 
 /// One leg with its corrections applied.
 struct PlacedLeg {
@@ -382,31 +409,34 @@ bool SixLegs::enclose_lifted(const Frame<TaylorModel>& platform, std::span<const
     return enclosed_actuators(platform, own, lifts, out.allowed);
   };
   std::vector<TaylorModel> rho = enclosed_actuators(platform, own, {}, out.allowed);
-  double before = std::numeric_limits<double>::infinity();
-  for (int iteration = 0; iteration < tube_iterations; ++iteration) {
+  std::vector<TaylorModel> found = unknown_models(rho.size()), allowed = unknown_models(out.allowed.size());
+  BoxValues before;
+  before.fill(std::numeric_limits<double>::infinity());
+  std::array<bool, TaylorModel::boxes> done{};
+  const auto all_done = [&] { return std::all_of(done.begin(), done.end(), [](bool one) { return one; }); };
+  for (int iteration = 0; iteration < tube_iterations && !all_done(); ++iteration) {
     for (TaylorModel& r : rho) r = r.with_radius(0.0);
     // Twice what the last step still moved is more than all that follow.
-    std::vector<TaylorModel> moved = next(rho), tube;
-    std::vector<double> radii;
-    double change = 0;
-    for (std::size_t i = 0; i < rho.size(); ++i) change = std::max(change, farthest(moved[i] - rho[i]));
-    for (const TaylorModel& m : moved) {
-      tube.push_back(m.widened(2 * change));
-      radii.push_back(tube.back().radius());
+    std::vector<TaylorModel> moved = next(rho), tubes;
+    BoxValues change{}, twice;
+    for (std::size_t i = 0; i < rho.size(); ++i) take_larger(change, (moved[i] - rho[i]).farthest());
+    for (std::size_t box = 0; box < change.size(); ++box) twice[box] = 2 * change[box];
+    for (const TaylorModel& m : moved) tubes.push_back(m.widened(twice));
+    const std::vector<TaylorModel> images = next(tubes);
+    const auto inside = are_inside(images, moved, tubes);
+    for (std::size_t box = 0; box < done.size(); ++box) {
+      // Narrower than what it encloses no tube gets.
+      if (done[box] || !inside[box] || !(change[box] > 0.5 * before[box])) continue;
+      done[box] = true;
+      for (std::size_t i = 0; i < found.size(); ++i) found[i].take_box(box, images[i]);
+      for (std::size_t i = 0; i < allowed.size(); ++i) allowed[i].take_box(box, out.allowed[i]);
     }
-    out.actuators = next(tube);
-    bool inside = true;
-    for (std::size_t i = 0; i < rho.size(); ++i) {
-      // The farthest of the image from the middle of the tube.
-      const double away = farthest(out.actuators[i] - moved[i].with_radius(0.0));
-      inside = inside && away <= radii[i];
-    }
-    // Narrower than what it encloses no tube gets.
-    if (inside && change > 0.5 * before) return true;
     before = change;
     rho = std::move(moved);
   }
-  return false;
+  out.actuators = std::move(found);
+  out.allowed = std::move(allowed);
+  return std::any_of(done.begin(), done.end(), [](bool one) { return one; });
 }
 
 bool SixLegs::do_enclose(std::span<const TaylorModel> q, std::span<const double> own, std::span<const int> selected,

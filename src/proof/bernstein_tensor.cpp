@@ -35,33 +35,31 @@ const auto& powers() {
 
 }  // namespace
 
-void BernsteinTensor::choose_degrees(const TaylorModel& f, double small) {
+void BernsteinTensor::choose_degrees(const TaylorModel& f, std::size_t box, double small) {
   const Monomials& m = *f.monomials();
-  const auto c = f.coefficients();
   const auto n = std::size_t(m.variables());
   // Sizes of the monomials by their degree in each variable.
   std::vector<std::array<double, Monomials::most_degree + 1>> sizes(n);
-  for (std::size_t i = 0; i < c.size(); ++i)
-    for (std::size_t a = 0; a < n; ++a) sizes[a][m.exponents(i)[a]] += std::abs(c[i]);
+  for (std::size_t i = 0; i < f.terms(); ++i)
+    for (std::size_t a = 0; a < n; ++a) sizes[a][m.exponents(i)[a]] += std::abs(f.coefficient(i, box));
   degrees_.assign(n, 0);
   for (std::size_t a = 0; a < n; ++a) {
     double left = small / double(n);
-    int degree = m.degree_of(c.size() - 1);
+    int degree = m.degree_of(f.terms() - 1);
     while (degree > 1 && sizes[a][std::size_t(degree)] <= left) left -= sizes[a][std::size_t(degree--)];
     degrees_[a] = degree;
   }
 }
 
-void BernsteinTensor::take(const TaylorModel& f, double small) {
+void BernsteinTensor::take(const TaylorModel& f, std::size_t box, double small) {
   if (f.monomials() == nullptr) {
     degrees_.clear();
-    now_.assign(1, f.constant());
-    beyond_ = f.radius();
+    now_.assign(1, f.constant(box));
+    beyond_ = f.radius(box);
     return;
   }
-  choose_degrees(f, small);
+  choose_degrees(f, box, small);
   const Monomials& m = *f.monomials();
-  const auto c = f.coefficients();
   const std::size_t n = degrees_.size();
   std::vector<std::size_t> strides(n);
   std::size_t size = 1;
@@ -72,19 +70,27 @@ void BernsteinTensor::take(const TaylorModel& f, double small) {
   now_.assign(size, 0.0);
   next_.resize(size);
   double all = 0, left_out = 0;
-  for (std::size_t i = 0; i < c.size(); ++i) {
+  for (std::size_t i = 0; i < f.terms(); ++i) {
+    const double c = f.coefficient(i, box);
     std::size_t at = 0;
     bool inside = true;
     for (std::size_t a = 0; a < n; ++a) {
       inside = inside && m.exponents(i)[a] <= degrees_[a];
       at += m.exponents(i)[a] * strides[a];
     }
-    (inside ? all : left_out) += std::abs(c[i]);
-    if (inside) now_[at] = c[i];
+    (inside ? all : left_out) += std::abs(c);
+    if (inside) now_[at] = c;
   }
-  for (std::size_t a = 0; a < n; ++a) {
+  // Where the last axes are done first, many slices of the others are still zero.
+  for (std::size_t a = n; a-- > 0;) {
     const int degree = degrees_[a];
     const auto terms = std::size_t(degree + 1);
+    // Slices along this axis that are zero.
+    empty_.resize(size / strides[a]);
+    for (std::size_t r = 0; r < empty_.size(); ++r) {
+      const double* from = now_.data() + r * strides[a];
+      empty_[r] = std::all_of(from, from + strides[a], [](double x) { return x == 0; });
+    }
     for (std::size_t o = 0; o < size / (terms * strides[a]); ++o)
       for (std::size_t i = 0; i < terms; ++i) {
         double* to = next_.data() + (o * terms + i) * strides[a];
@@ -92,13 +98,15 @@ void BernsteinTensor::take(const TaylorModel& f, double small) {
         for (std::size_t k = 0; k < terms; ++k) {
           const double w = powers()[std::size_t(degree)][i][k];
           const double* from = now_.data() + (o * terms + k) * strides[a];
+          // Monomials of a high degree in several variables have none.
+          if (empty_[o * terms + k]) continue;
           for (std::size_t x = 0; x < strides[a]; ++x) to[x] += w * from[x];
         }
       }
     now_.swap(next_);
   }
   // Each coefficient is a sum of all with factors of 1 at most, a dozen operations an axis.
-  beyond_ = (f.radius() + left_out + 16.0 * double(n) * epsilon * all) * (1 + 1e-12);
+  beyond_ = (f.radius(box) + left_out + 16.0 * double(n) * epsilon * all) * (1 + 1e-12);
 }
 
 double BernsteinTensor::largest() const {

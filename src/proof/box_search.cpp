@@ -12,8 +12,9 @@
 namespace posewright {
 namespace {
 
-// Boxes of one round; more threads than this would have nothing to do.
-constexpr std::size_t boxes_a_round = 16;
+// Boxes of one round; more threads than this would have nothing to do. Of those that are judged together there are as
+// many groups as a few threads share.
+constexpr std::size_t boxes_a_round = 32, groups_a_round = 8;
 
 /// Two halves of each box from `first` on.
 void halve(std::vector<SearchBox>& boxes, std::size_t first, std::size_t axis) {
@@ -50,6 +51,8 @@ BoxSearchResult largest_value(std::vector<SearchBox> round, const std::function<
   std::vector<std::unique_ptr<BoxJudge>> judges;
   judges.reserve(std::size_t(threads));
   for (int i = 0; i < threads; ++i) judges.push_back(make());
+  const std::size_t together = judges.front()->together();
+  const std::size_t most_in_round = together == 1 ? boxes_a_round : groups_a_round * together;
   const auto enough_now = [&] {
     const double best = result.found.value;
     const double near = std::isfinite(best) ? best + options.tolerance * std::abs(best) : best;
@@ -58,25 +61,32 @@ BoxSearchResult largest_value(std::vector<SearchBox> round, const std::function<
   while (true) {
     std::vector<LargestFound> found(round.size(), result.found);
     const double enough = enough_now();
+    const std::size_t groups = (round.size() + together - 1) / together;
+    const auto boxes_of = [&](std::size_t i) {
+      return std::span(round).subspan(together * i, std::min(together, round.size() - together * i));
+    };
+    const auto found_of = [&](std::size_t i) { return std::span(found).subspan(together * i, boxes_of(i).size()); };
     // Boxes that are not judged keep an infinite bound.
     if (options.shared && monitor.engine != nullptr) {
       result.stopped = run_tasks(
-          {"boxes", round.size(), threads, [](std::size_t, std::string_view) {}},
+          {"boxes", groups, threads, [](std::size_t, std::string_view) {}},
           [&](std::size_t i, int thread) {
-            judges[std::size_t(thread)]->judge(round[i], enough, found[i]);
+            judges[std::size_t(thread)]->judge_together(boxes_of(i), enough, found_of(i));
             ByteWriter bytes;
-            each_field(round[i], found[i], [&](const auto& field) { bytes.put(field); });
+            for (std::size_t k = 0; k < boxes_of(i).size(); ++k)
+              each_field(boxes_of(i)[k], found_of(i)[k], [&](const auto& field) { bytes.put(field); });
             return bytes.take();
           },
           [&](std::size_t i, std::string_view from) {
             ByteReader bytes(from);
-            each_field(round[i], found[i], [&](auto& field) { bytes.get(field); });
+            for (std::size_t k = 0; k < boxes_of(i).size(); ++k)
+              each_field(boxes_of(i)[k], found_of(i)[k], [&](auto& field) { bytes.get(field); });
           },
           monitor);
     } else {
-      parallel_for(round.size(), threads, [&](std::size_t i, int thread) {
+      parallel_for(groups, threads, [&](std::size_t i, int thread) {
         if (monitor.should_stop()) return;
-        judges[std::size_t(thread)]->judge(round[i], enough, found[i]);
+        judges[std::size_t(thread)]->judge_together(boxes_of(i), enough, found_of(i));
       });
       result.stopped = monitor.should_stop();
     }
@@ -93,7 +103,7 @@ BoxSearchResult largest_value(std::vector<SearchBox> round, const std::function<
     round.clear();
     result.complete = open.top().bound <= enough_now();
     if (result.complete || result.stopped || result.boxes >= options.most_boxes) break;
-    while (round.size() < 2 * boxes_a_round && !open.empty() && open.top().bound > enough_now()) {
+    while (round.size() < most_in_round && !open.empty() && open.top().bound > enough_now()) {
       const std::size_t first = round.size();
       round.push_back(open.top());
       open.pop();

@@ -15,6 +15,7 @@ namespace posewright {
 namespace {
 
 using Matrix = TipModel::EnclosedResidual::Matrix;
+using Values = TaylorModel::Values;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double up = 1 + 1e-12;
 
@@ -23,13 +24,12 @@ constexpr double up = 1 + 1e-12;
 struct ReducedRow {
   std::vector<TaylorModel> v;
   Eigen::MatrixXd Q;
-  double away = 0, size = 0;  ///< size: no ‖v‖ exceeds it
+  Values away{}, size{};  ///< size: no ‖v‖ exceeds it
 
   ReducedRow(const Matrix& F, Eigen::Index row, const Eigen::MatrixXd& T) {
     std::vector<Eigen::Index> used;
     for (Eigen::Index c = 0; c < F.cols(); ++c)
-      if (const TaylorModel& f = F(row, c); f.monomials() != nullptr || f.constant() != 0 || f.radius() > 0)
-        used.push_back(c);
+      if (!F(row, c).is_zero()) used.push_back(c);
     const auto n = Eigen::Index(used.size()), k = T.cols(), rank = std::min(n, k);
     Eigen::MatrixXd own(n, k);
     for (Eigen::Index i = 0; i < n; ++i) own.row(i) = T.row(used[std::size_t(i)]);
@@ -45,10 +45,14 @@ struct ReducedRow {
       v.push_back(std::move(sum));
     }
     for (Eigen::Index i = 0; i < n; ++i) {
-      const TaylorModel& f = F(row, used[std::size_t(i)]);
-      away += std::max(std::abs(f.lower()), std::abs(f.upper())) * rest.row(i).norm() * up;
+      const Values farthest = F(row, used[std::size_t(i)]).farthest();
+      const double left = rest.row(i).norm() * up;
+      for (std::size_t box = 0; box < away.size(); ++box) away[box] += farthest[box] * left;
     }
-    for (const TaylorModel& f : v) size += std::max(std::abs(f.lower()), std::abs(f.upper())) * up;
+    for (const TaylorModel& f : v) {
+      const Values farthest = f.farthest();
+      for (std::size_t box = 0; box < size.size(); ++box) size[box] += farthest[box] * up;
+    }
   }
 };
 
@@ -62,8 +66,12 @@ TaylorModel product(const ReducedRow& a, const ReducedRow& b) {
     sum += a.v[std::size_t(i)] * other;
   }
   // Rows of Q have norm 1 to a few roundings; C is a sum of as many products as Q has columns.
-  const double rounding = 2 * double(a.Q.cols() + 2) * epsilon * a.size * b.size;
-  return sum.widened((rounding + 1.01 * (a.away * (b.size + b.away) + b.away * a.size)) * up);
+  const double rounding = 2 * double(a.Q.cols() + 2) * epsilon;
+  Values by;
+  for (std::size_t k = 0; k < by.size(); ++k)
+    by[k] =
+        (rounding * a.size[k] * b.size[k] + 1.01 * (a.away[k] * (b.size[k] + b.away[k]) + b.away[k] * a.size[k])) * up;
+  return sum.widened(by);
 }
 
 /// F_X Σ_X F_Xᵀ + F_ρ Σ_ρ F_ρᵀ, lower triangle.
@@ -82,9 +90,7 @@ Matrix residual_covariance(const TipModel::EnclosedResidual& residual, const Eig
       for (std::size_t a = 0; a < noise.size(); ++a) {
         const TaylorModel &left = residual.actuator(i, Eigen::Index(a)), &right = residual.actuator(j, Eigen::Index(a));
         // Each loop knows its own actuator alone.
-        if (noise[a] == 0 || (left.monomials() == nullptr && left.constant() == 0 && left.radius() == 0) ||
-            (right.monomials() == nullptr && right.constant() == 0 && right.radius() == 0))
-          continue;
+        if (noise[a] == 0 || left.is_zero() || right.is_zero()) continue;
         sum.add(noise[a] * noise[a], left * right);
       }
       result(i, j) = std::move(sum);

@@ -29,21 +29,29 @@ constexpr double far_above = 0.1;
 // Boxes that are looked into for what searches miss: a second or two.
 constexpr long boxes_of_a_look = 300;
 
+using Values = TaylorModel::Values;
+
+/// Linear part of a model on one box, and how far f may be from it.
+struct LinearPart {
+  double constant, rest = 0;  ///< |f − constant − slopes · x| ≤ rest
+  std::array<double, Monomials::most_variables> slopes{};
+  double linear = 0;  ///< Σ |slopes|
+
+  LinearPart(const TaylorModel& f, const Values& variations, std::size_t box) : constant(f.constant(box)) {
+    const auto n = f.monomials() == nullptr ? std::size_t{0} : std::size_t(f.monomials()->variables());
+    for (std::size_t a = 0; a < n; ++a) linear += std::abs(slopes[a] = f.coefficient(1 + a, box));
+    rest = (variations[box] - linear) + f.radius(box) +
+           8 * epsilon * (std::abs(constant) + variations[box] + f.radius(box));
+  }
+};
+
 /// f ≥ 0 on the box [−1, 1]^n where x lies in all of [lower, upper] only; false: nowhere.
-bool cut(const TaylorModel& f, std::vector<double>& lower, std::vector<double>& upper) {
-  if (f.upper() < 0) return false;
-  if (!f.known() || f.monomials() == nullptr) return true;
-  // f is at most this, and its linear part.
-  const auto n = std::size_t(f.monomials()->variables());
-  double linear = 0;
-  for (std::size_t a = 0; a < n; ++a) linear += std::abs(f.coefficients()[1 + a]);
-  const double rest = (f.constant() + (f.variation() - linear) + f.radius()) +
-                      8 * epsilon * (std::abs(f.constant()) + f.variation() + f.radius());
-  for (std::size_t a = 0; a < n; ++a) {
-    const double slope = f.coefficients()[1 + a];
+bool cut(const LinearPart& f, std::vector<double>& lower, std::vector<double>& upper) {
+  for (std::size_t a = 0; a < lower.size(); ++a) {
+    const double slope = f.slopes[a];
     if (slope == 0) continue;
-    // rest + the other slopes + slope · x ≥ 0.
-    const double reach = rest + (linear - std::abs(slope)) + 8 * epsilon * linear;
+    // The constant, the rest and the other slopes + slope · x ≥ 0.
+    const double reach = (f.constant + f.rest) + (f.linear - std::abs(slope)) + 8 * epsilon * f.linear;
     const double end = -reach / slope;
     if (slope > 0) lower[a] = std::max(lower[a], end - 8 * epsilon * std::abs(end));
     else upper[a] = std::min(upper[a], end + 8 * epsilon * std::abs(end));
@@ -53,38 +61,37 @@ bool cut(const TaylorModel& f, std::vector<double>& lower, std::vector<double>& 
 }
 
 /// One multiplier after a step of Newton's method; `slopes` follow.
-double improved(const TaylorModel& c, double lambda, double smoothing, double size, std::vector<double>& slopes) {
-  double first = c.constant(), second = 0, own = 0;
+double improved(const LinearPart& c, double lambda, double smoothing, double size, std::vector<double>& slopes) {
+  double first = c.constant, second = 0;
   for (std::size_t a = 0; a < slopes.size(); ++a) {
-    const double slope = c.coefficients()[1 + a], root = std::hypot(slopes[a], smoothing);
+    const double slope = c.slopes[a], root = std::sqrt(slopes[a] * slopes[a] + smoothing * smoothing);
     first += slope * slopes[a] / root;
     second += slope * slope * smoothing * smoothing / (root * root * root);
-    own += std::abs(slope);
   }
-  if (!(own > 0) || !(second > 0)) return lambda;
-  const double most = size / own;
+  if (!(c.linear > 0) || !(second > 0)) return lambda;
+  const double most = size / c.linear;
   const double next = std::clamp(lambda - first / second, std::max(0.0, lambda - most), lambda + most);
-  for (std::size_t a = 0; a < slopes.size(); ++a) slopes[a] += (next - lambda) * c.coefficients()[1 + a];
+  for (std::size_t a = 0; a < slopes.size(); ++a) slopes[a] += (next - lambda) * c.slopes[a];
   return next;
 }
 
 /// λ ≥ 0 that makes Σ λ_i c_i + Σ_a |slope_a of d + Σ λ_i c_i| small: the linear parts' bound of d + Σ λ_i c_i. Any λ
 /// is valid.
-std::vector<double> multipliers(const TaylorModel& d, const std::vector<const TaylorModel*>& limits) {
+std::vector<double> multipliers(const TaylorModel& d, std::size_t box, const std::vector<LinearPart>& limits) {
   std::vector<double> lambda(limits.size(), 0.0);
   if (limits.empty() || d.monomials() == nullptr) return lambda;
   const auto n = std::size_t(d.monomials()->variables());
   std::vector<double> slopes(n, 0.0);
   double size = 0;
-  for (std::size_t a = 0; a < n; ++a) size += std::abs(slopes[a] = d.coefficients()[1 + a]);
+  for (std::size_t a = 0; a < n; ++a) size += std::abs(slopes[a] = d.coefficient(1 + a, box));
   double smoothing = first_smoothing * size, least = size;
   std::vector<double> best = lambda;
   for (int round = 0; round < smoothings && size > 0; ++round, smoothing *= finer) {
     for (int sweep = 0; sweep < sweeps; ++sweep)
       for (std::size_t i = 0; i < limits.size(); ++i)
-        lambda[i] = improved(*limits[i], lambda[i], smoothing, size, slopes);
+        lambda[i] = improved(limits[i], lambda[i], smoothing, size, slopes);
     double value = 0;
-    for (std::size_t i = 0; i < limits.size(); ++i) value += lambda[i] * limits[i]->constant();
+    for (std::size_t i = 0; i < limits.size(); ++i) value += lambda[i] * limits[i].constant;
     for (const double slope : slopes) value += std::abs(slope);
     if (!(value < least)) continue;
     least = value;
@@ -107,51 +114,89 @@ class TaylorJudge : public BoxJudge {
   }
 
   void judge(SearchBox& box, double enough, LargestFound& found) override {
-    const double before = box.bound;
-    box.bound = -infinity;
-    box.also = -1;
-    for (int cuts = 0;; ++cuts) {
-      put(box);
-      allowed_.clear();
-      // Without an enclosure nothing is known of a box but that it can be halved.
-      if (!enclosure_->allowed(q_, allowed_)) return leave_unknown(box, before);
-      double left = 1;
-      if (!cut_off(box, left)) return;
-      if (left > worth_a_cut || cuts == most_cuts) break;
+    judge_together(std::span(&box, 1), enough, std::span(&found, 1));
+  }
+
+  std::size_t together() const override { return TaylorModel::boxes; }
+
+  void judge_together(std::span<SearchBox> boxes, double enough, std::span<LargestFound> found) override {
+    std::vector<double> before;
+    for (SearchBox& box : boxes) {
+      before.push_back(box.bound);
+      box.bound = -infinity;
+      box.also = -1;
     }
+    std::vector<bool> possible(boxes.size(), true);
+    // Without an enclosure nothing is known of a box but that it can be halved.
     TaylorModel d;
-    if (!enclosure_->sensitivity(q_, d) || !d.known()) return leave_unknown(box, before);
-    look_at_middle(d, box, found);
-    std::vector<const TaylorModel*> limits;
-    for (const TaylorModel& c : allowed_)
-      if (c.known() && c.monomials() != nullptr && !(c.lower() >= 0)) limits.push_back(&c);
-    const std::vector<double> lambda = multipliers(d, limits);
-    for (std::size_t i = 0; i < limits.size(); ++i)
-      if (lambda[i] > 0) d.add(lambda[i], *limits[i]);
-    tensor_.take(d, std::isfinite(enough) ? small_share * std::abs(enough) : 0.0);
-    box.bound = std::min(before, tensor_.largest());
-    const auto [axis, second] = tensor_.most_varied();
-    box.longest = axis;
-    // Halves of a box that is far above would be halved again.
-    box.also = box.bound > enough + far_above * std::abs(enough) ? second : -1;
-    show(box);
+    const bool enclosed = cut_all(boxes, possible);
+    if (enclosed && std::none_of(possible.begin(), possible.end(), [](bool one) { return one; })) return;
+    if (!enclosed || !enclosure_->sensitivity(q_, d))
+      for (std::size_t i = 0; i < boxes.size(); ++i) d.put_unknown(i);
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      if (!possible[i]) continue;
+      if (!d.known(i)) leave_unknown(boxes[i], before[i]);
+      else look_at_middle(d, i, boxes[i], found[i]);
+    }
+    add_limits(d, boxes.size());
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+      if (possible[i] && d.known(i)) bound(d, i, boxes[i], before[i], enough);
   }
 
  private:
-  /// The box as variables.
-  void put(const SearchBox& box) {
+  /// The boxes as variables; those that are too few are made up by the last.
+  void put(std::span<const SearchBox> boxes) {
     q_.clear();
-    for (std::size_t k = 0; k < moving_.size(); ++k)
-      q_.push_back(moving_[k] < 0 ? TaylorModel(fixed_[k])
-                                  : TaylorModel::variable(*monomials_, moving_[k], box.lower[std::size_t(moving_[k])],
-                                                          box.upper[std::size_t(moving_[k])]));
+    for (std::size_t k = 0; k < moving_.size(); ++k) {
+      if (moving_[k] < 0) {
+        q_.emplace_back(fixed_[k]);
+        continue;
+      }
+      const auto a = std::size_t(moving_[k]);
+      Values lower, upper;
+      for (std::size_t i = 0; i < lower.size(); ++i) {
+        lower[i] = boxes[std::min(i, boxes.size() - 1)].lower[a];
+        upper[i] = boxes[std::min(i, boxes.size() - 1)].upper[a];
+      }
+      q_.push_back(TaylorModel::variable(*monomials_, moving_[k], lower, upper));
+    }
   }
 
-  /// Cuts off the box what no limit allows. @param left  smallest share of an axis that is left
-  bool cut_off(SearchBox& box, double& left) const {
+  /// Cuts off boxes what no limit allows; allowed_ are the limits on what is left, and on a little more.
+  /// @param possible  false where nothing is left
+  /// @return false if there is no enclosure
+  bool cut_all(std::span<SearchBox> boxes, std::vector<bool>& possible) {
+    std::vector<bool> cutting(boxes.size(), true);
+    for (int cuts = 0;; ++cuts) {
+      put(boxes);
+      allowed_.clear();
+      if (!enclosure_->allowed(q_, allowed_)) return false;
+      variations_.clear();
+      for (TaylorModel& c : allowed_) {
+        c.clear_unknown();
+        variations_.push_back(c.variations());
+      }
+      bool again = false;
+      for (std::size_t i = 0; i < boxes.size(); ++i) {
+        if (!cutting[i]) continue;
+        double left = 1;
+        possible[i] = cut_off(i, boxes[i], left);
+        cutting[i] = possible[i] && left <= worth_a_cut && cuts < most_cuts;
+        again = again || cutting[i];
+      }
+      if (!again) return true;
+    }
+  }
+
+  /// @param left  smallest share of an axis that is left
+  bool cut_off(std::size_t i, SearchBox& box, double& left) const {
     std::vector<double> lower(std::size_t(variables_), -1.0), upper(std::size_t(variables_), 1.0);
-    for (const TaylorModel& c : allowed_)
-      if (!cut(c, lower, upper)) return false;
+    for (std::size_t k = 0; k < allowed_.size(); ++k) {
+      const TaylorModel& c = allowed_[k];
+      if (!c.known(i)) continue;
+      const LinearPart f(c, variations_[k], i);
+      if (f.constant + f.linear + f.rest < 0 || !cut(f, lower, upper)) return false;
+    }
     for (std::size_t a = 0; a < lower.size(); ++a) {
       left = std::min(left, 0.5 * (upper[a] - lower[a]));
       const double middle = 0.5 * box.lower[a] + 0.5 * box.upper[a], half = 0.5 * (box.upper[a] - box.lower[a]);
@@ -160,6 +205,39 @@ class TaylorJudge : public BoxJudge {
       if (upper[a] < 1) box.upper[a] = std::min(box.upper[a], middle + upper[a] * half + slack);
     }
     return true;
+  }
+
+  /// d + Σ λ_i c_i in place of d on each of the first boxes, for λ of its own.
+  void add_limits(TaylorModel& d, std::size_t count) const {
+    std::vector<Values> lambda(allowed_.size(), Values{});
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!d.known(i)) continue;
+      std::vector<LinearPart> limits;
+      std::vector<std::size_t> of;
+      for (std::size_t k = 0; k < allowed_.size(); ++k) {
+        const TaylorModel& c = allowed_[k];
+        if (!c.known(i) || c.monomials() == nullptr) continue;
+        const LinearPart f(c, variations_[k], i);
+        // What holds in all of the box rules out nothing.
+        if (f.constant - f.linear - f.rest >= 0) continue;
+        limits.push_back(f);
+        of.push_back(k);
+      }
+      const std::vector<double> best = multipliers(d, i, limits);
+      for (std::size_t k = 0; k < best.size(); ++k) lambda[of[k]][i] = best[k];
+    }
+    for (std::size_t k = 0; k < allowed_.size(); ++k)
+      if (lambda[k] != Values{}) d.add(lambda[k], allowed_[k]);
+  }
+
+  void bound(const TaylorModel& d, std::size_t i, SearchBox& box, double before, double enough) {
+    tensor_.take(d, i, std::isfinite(enough) ? small_share * std::abs(enough) : 0.0);
+    box.bound = std::min(before, tensor_.largest());
+    const auto [axis, second] = tensor_.most_varied();
+    box.longest = axis;
+    // Halves of a box that is far above would be halved again.
+    box.also = box.bound > enough + far_above * std::abs(enough) ? second : -1;
+    show(box);
   }
 
   void leave_unknown(SearchBox& box, double before) const {
@@ -173,11 +251,11 @@ class TaylorJudge : public BoxJudge {
   }
 
   /// The value in the middle, if it is feasible for all that is known.
-  void look_at_middle(const TaylorModel& d, const SearchBox& box, LargestFound& found) const {
-    const double value = d.constant() - d.radius();
+  void look_at_middle(const TaylorModel& d, std::size_t i, const SearchBox& box, LargestFound& found) const {
+    const double value = d.constant(i) - d.radius(i);
     if (!(value > found.value)) return;
     for (const TaylorModel& c : allowed_)
-      if (!(c.constant() - c.radius() >= 0)) return;
+      if (!(c.constant(i) - c.radius(i) >= 0)) return;
     found.value = value;
     found.function = box.function;
     found.where = middle_of(box);
@@ -206,6 +284,7 @@ class TaylorJudge : public BoxJudge {
   int variables_ = 0;
   const Monomials* monomials_ = nullptr;
   std::vector<TaylorModel> q_, allowed_;
+  std::vector<Values> variations_;  // of allowed_
   BernsteinTensor tensor_;
 };
 

@@ -8,6 +8,9 @@
 #include <mutex>
 #include <utility>
 
+#include "posewright/support/instruction_set.hpp"
+#include "taylor/kernels.hpp"
+
 namespace posewright {
 namespace {
 
@@ -35,43 +38,53 @@ void append_exponents(int variables, int variable, int left, Monomials::Exponent
   }
 }
 
-using Coefficients = Eigen::Map<Eigen::ArrayXd>;
-using ConstCoefficients = Eigen::Map<const Eigen::ArrayXd>;
+using Values = TaylorModel::Values;
+using Norms = std::array<Values, Monomials::most_degree + 1>;
+constexpr std::size_t boxes = TaylorModel::boxes;
+static_assert(boxes == taylor_lanes);
 
-Coefficients array(std::vector<double>& c) { return {c.data(), Eigen::Index(c.size())}; }
-ConstCoefficients array(std::span<const double> c) { return {c.data(), Eigen::Index(c.size())}; }
+const TaylorKernels& kernels() {
+#if defined(__x86_64__)
+  if (instruction_set() == InstructionSet::avx512) return taylor_kernels_avx512;
+  if (instruction_set() == InstructionSet::avx2) return taylor_kernels_avx2;
+#endif
+  return taylor_kernels_sse2;
+}
 
-using Norms = std::array<double, Monomials::most_degree + 1>;
+Values all(double value) {
+  Values result;
+  result.fill(value);
+  return result;
+}
 
-/// Four sums side by side, in this order on every processor.
-double sum_of_sizes(std::span<const double> c) {
-  std::array<double, 4> sums{};
-  std::size_t i = 0;
-  for (; i + 4 <= c.size(); i += 4)
-    for (std::size_t k = 0; k < 4; ++k) sums[k] += std::abs(c[i + k]);
-  for (std::size_t k = 0; i < c.size(); ++i, ++k) sums[k] += std::abs(c[i]);
-  return (sums[0] + sums[1]) + (sums[2] + sums[3]);
+Values each(const auto& of) {
+  Values result;
+  for (std::size_t k = 0; k < boxes; ++k) result[k] = of(k);
+  return result;
 }
 
 /// Σ |coefficients| of each degree, rounded down at worst by what `up` makes good.
 Norms norms_of(const TaylorModel& f) {
   Norms norms{};
-  const std::span<const double> c = f.coefficients();
-  if (f.monomials() == nullptr) return {std::abs(c[0])};
   std::size_t first = 0;
-  for (int d = 0; first < c.size(); ++d) {
-    const std::size_t end = std::min(c.size(), f.monomials()->count_to(d));
-    norms[std::size_t(d)] = sum_of_sizes(c.subspan(first, end - first));
+  for (std::size_t d = 0; first < f.terms(); ++d) {
+    const std::size_t end = f.monomials() == nullptr ? 1 : std::min(f.terms(), f.monomials()->count_to(int(d)));
+    kernels().sum_sizes(f.coefficients() + boxes * first, end - first, norms[d].data());
     first = end;
   }
   return norms;
 }
 
+bool is_zero(const double* values) {
+  return std::all_of(values, values + boxes, [](double x) { return x == 0; });
+}
+
 /// Coefficients up to degree 2 that are not zero: nearly all that a factor has to multiply.
 std::size_t large_terms(const TaylorModel& f) {
-  const std::span<const double> c = f.coefficients();
-  const auto leading = c.first(std::min(c.size(), f.monomials()->count_to(std::min(2, f.monomials()->degree()))));
-  return std::size_t(std::count_if(leading.begin(), leading.end(), [](double x) { return x != 0; }));
+  const std::size_t leading = std::min(f.terms(), f.monomials()->count_to(std::min(2, f.monomials()->degree())));
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < leading; ++i) count += std::size_t(!is_zero(f.coefficients() + boxes * i));
+  return count;
 }
 
 double clean(double radius) { return radius < infinity ? radius : infinity; }
@@ -106,220 +119,319 @@ const Monomials& Monomials::of(int variables, int degree) {
   return *place;
 }
 
-TaylorModel TaylorModel::unknown() {
+TaylorModel::TaylorModel(double constant) : coefficients_(boxes, constant) {}
+
+TaylorModel TaylorModel::constants(const Values& constants) {
   TaylorModel f;
-  f.radius_ = infinity;
+  std::copy(constants.begin(), constants.end(), f.coefficients_.begin());
   return f;
 }
 
-TaylorModel TaylorModel::variable(const Monomials& monomials, int k, double lower, double upper) {
-  const double middle = 0.5 * lower + 0.5 * upper;
-  TaylorModel x(middle);
+TaylorModel TaylorModel::variable(const Monomials& monomials, int k, const Values& lower, const Values& upper) {
+  TaylorModel x;
   x.monomials_ = &monomials;
-  x.coefficients_.resize(monomials.count_to(1), 0.0);
-  // Exponents of degree 1 are in the order of the variables.
-  const double half = std::max(upper - middle, middle - lower) * (1 + 2 * epsilon);
-  x.coefficients_[std::size_t(1 + k)] = half;
-  x.radius_ = epsilon * std::abs(middle) + 4 * epsilon * half;
+  x.coefficients_.resize(boxes * monomials.count_to(1), 0.0);
+  for (std::size_t box = 0; box < boxes; ++box) {
+    const double middle = 0.5 * lower[box] + 0.5 * upper[box];
+    const double half = std::max(upper[box] - middle, middle - lower[box]) * (1 + 2 * epsilon);
+    x.coefficients_[box] = middle;
+    // Exponents of degree 1 are in the order of the variables.
+    x.coefficients_[boxes * std::size_t(1 + k) + box] = half;
+    x.radius_[box] = epsilon * std::abs(middle) + 4 * epsilon * half;
+  }
   return x;
 }
 
-TaylorModel TaylorModel::between(double lower, double upper) {
-  TaylorModel f(0.5 * lower + 0.5 * upper);
-  f.radius_ = clean(std::max(upper - f.constant(), f.constant() - lower) * (1 + 4 * epsilon) + underflow);
-  return f;
+TaylorModel TaylorModel::variable(const Monomials& monomials, int k, double lower, double upper) {
+  return variable(monomials, k, all(lower), all(upper));
 }
 
-bool TaylorModel::known() const { return radius_ < infinity; }
-
-double TaylorModel::variation() const { return array(coefficients().subspan(1)).abs().sum() * up; }
-
-double TaylorModel::lower() const {
-  const double reach = (variation() + radius_) * up;
-  return constant() - reach - epsilon * (std::abs(constant()) + reach);
+bool TaylorModel::is_zero() const {
+  return monomials_ == nullptr && posewright::is_zero(coefficients_.data()) && posewright::is_zero(radius_.data());
 }
 
-double TaylorModel::upper() const {
-  const double reach = (variation() + radius_) * up;
-  return constant() + reach + epsilon * (std::abs(constant()) + reach);
+void TaylorModel::put_constant(std::size_t box, double constant) {
+  for (std::size_t i = 0; i < terms(); ++i) coefficients_[boxes * i + box] = 0.0;
+  coefficients_[box] = constant;
 }
 
-TaylorModel TaylorModel::widened(double by) const {
+void TaylorModel::put_between(std::size_t box, double lower, double upper) {
+  const double middle = 0.5 * lower + 0.5 * upper;
+  put_constant(box, middle);
+  radius_[box] = clean(std::max(upper - middle, middle - lower) * (1 + 4 * epsilon) + underflow);
+}
+
+void TaylorModel::put_unknown(std::size_t box) {
+  put_constant(box, 0.0);
+  radius_[box] = infinity;
+}
+
+void TaylorModel::clear_unknown() {
+  for (std::size_t box = 0; box < boxes; ++box)
+    if (!known(box)) put_constant(box, 0.0);
+}
+
+void TaylorModel::take_box(std::size_t box, const TaylorModel& other) {
+  take_monomials(other);
+  for (std::size_t i = 0; i < terms(); ++i)
+    coefficients_[boxes * i + box] = i < other.terms() ? other.coefficient(i, box) : 0.0;
+  radius_[box] = other.radius_[box];
+}
+
+bool TaylorModel::known(std::size_t box) const { return radius_[box] < infinity; }
+
+Values TaylorModel::variations() const {
+  Values sizes;
+  kernels().sum_sizes(coefficients_.data() + boxes, terms() - 1, sizes.data());
+  for (double& size : sizes) size *= up;
+  return sizes;
+}
+
+Values TaylorModel::lowers() const {
+  const Values variation = variations();
+  return each([&](std::size_t k) {
+    const double reach = (variation[k] + radius_[k]) * up;
+    return constant(k) - reach - epsilon * (std::abs(constant(k)) + reach);
+  });
+}
+
+Values TaylorModel::uppers() const {
+  const Values variation = variations();
+  return each([&](std::size_t k) {
+    const double reach = (variation[k] + radius_[k]) * up;
+    return constant(k) + reach + epsilon * (std::abs(constant(k)) + reach);
+  });
+}
+
+Values TaylorModel::farthest() const {
+  const Values variation = variations();
+  return each([&](std::size_t k) {
+    const double reach = (variation[k] + radius_[k]) * up;
+    return std::abs(constant(k)) + reach + epsilon * (std::abs(constant(k)) + reach);
+  });
+}
+
+TaylorModel TaylorModel::widened(const Values& by) const {
   TaylorModel f = *this;
-  f.radius_ = clean((f.radius_ + by) * up);
+  for (std::size_t k = 0; k < boxes; ++k) f.radius_[k] = clean((f.radius_[k] + by[k]) * up);
   return f;
 }
 
 TaylorModel TaylorModel::with_radius(double radius) const {
   TaylorModel f = *this;
-  f.radius_ = radius;
+  f.radius_.fill(radius);
   return f;
 }
 
 void TaylorModel::take_monomials(const TaylorModel& other) {
   if (monomials_ == nullptr) monomials_ = other.monomials_;
-  if (coefficients_.size() < other.coefficients_.size()) coefficients_.resize(other.coefficients_.size(), 0.0);
+  const std::size_t size = coefficients_.size();
+  if (size >= other.coefficients_.size()) return;
+  coefficients_.resize(other.coefficients_.size());
+  std::fill(coefficients_.begin() + std::ptrdiff_t(size), coefficients_.end(), 0.0);
 }
 
-void TaylorModel::add(double factor, const TaylorModel& other) {
+void TaylorModel::add(double factor, const TaylorModel& other) { add(all(factor), other); }
+
+void TaylorModel::add(const Values& factor, const TaylorModel& other) {
   take_monomials(other);
-  const auto from = array(other.coefficients());
-  auto to = array(coefficients_).head(from.size());
-  to += factor * from;
-  const double size = std::abs(factor) * from.abs().sum() * up + to.abs().sum();
-  radius_ = clean((radius_ + std::abs(factor) * other.radius_ + epsilon * size + underflow) * up);
-}
-
-TaylorModel& TaylorModel::operator+=(const TaylorModel& other) {
-  take_monomials(other);
-  const auto from = array(other.coefficients());
-  auto to = array(coefficients_).head(from.size());
-  to += from;
-  const double size = to.abs().sum();
-  radius_ = clean((radius_ + other.radius_ + epsilon * size) * up);
-  return *this;
-}
-
-TaylorModel& TaylorModel::operator-=(const TaylorModel& other) {
-  take_monomials(other);
-  const auto from = array(other.coefficients());
-  auto to = array(coefficients_).head(from.size());
-  to -= from;
-  const double size = to.abs().sum();
-  radius_ = clean((radius_ + other.radius_ + epsilon * size) * up);
-  return *this;
-}
-
-TaylorModel operator-(TaylorModel a) {
-  for (double& c : a.coefficients_) c = -c;
-  return a;
-}
-
-TaylorModel operator*(const TaylorModel& a, const TaylorModel& b) {
-  if (a.coefficients_.size() > b.coefficients_.size()) return b * a;
-  if (a.coefficients_.size() == 1) {
-    // A factor that is known to lie within a radius of a number.
-    TaylorModel product = b;
-    array(product.coefficients_) *= a.coefficients_[0];
-    const double size = array(product.coefficients_).abs().sum();
-    const double b_size = a.radius_ > 0 ? (b.variation() + std::abs(b.constant()) + b.radius_) * up : 0.0;
-    product.radius_ =
-        clean((std::abs(a.coefficients_[0]) * b.radius_ + a.radius_ * b_size + epsilon * size + underflow) * up);
-    return product;
+  std::array<Values, 2> sizes;
+  kernels().add_multiple(coefficients_.data(), factor.data(), other.coefficients_.data(), other.terms(),
+                         sizes.front().data());
+  for (std::size_t k = 0; k < boxes; ++k) {
+    if (factor[k] == 0) continue;
+    const double size = std::abs(factor[k]) * sizes[0][k] * up + sizes[1][k];
+    radius_[k] = clean((radius_[k] + std::abs(factor[k]) * other.radius_[k] + epsilon * size + underflow) * up);
   }
-  // A rotation's entries are functions of three variables: most of their coefficients are zero.
-  if (a.coefficients_.size() == b.coefficients_.size() && large_terms(b) < large_terms(a)) return b * a;
-  const Monomials& m = *a.monomials_;
-  const Norms norms_a = norms_of(a), norms_b = norms_of(b);
-  int degree_a = m.degree_of(a.coefficients_.size() - 1), degree_b = m.degree_of(b.coefficients_.size() - 1);
+}
+
+TaylorModel& TaylorModel::add_multiple(double sign, const TaylorModel& other) {
+  take_monomials(other);
+  std::array<Values, 2> sizes;
+  kernels().add_multiple(coefficients_.data(), all(sign).data(), other.coefficients_.data(), other.terms(),
+                         sizes.front().data());
+  for (std::size_t k = 0; k < boxes; ++k)
+    radius_[k] = clean((radius_[k] + other.radius_[k] + epsilon * sizes[1][k]) * up);
+  return *this;
+}
+
+TaylorModel operator-(const TaylorModel& a) {
+  TaylorModel f = a;
+  for (double& c : f.coefficients_) c = -c;
+  return f;
+}
+
+/// Product with numbers, each known to lie within its radius of the factor.
+TaylorModel scaled(const Values& factor, const Values& radius, const TaylorModel& f) {
   TaylorModel product;
-  product.monomials_ = &m;
-  product.coefficients_.assign(m.count_to(std::min(m.degree(), degree_a + degree_b)), 0.0);
-  // Products with the constants stand side by side.
-  array(product.coefficients_).head(Eigen::Index(b.coefficients_.size())) = a.constant() * array(b.coefficients());
-  array(product.coefficients_).segment(1, Eigen::Index(a.coefficients_.size()) - 1) +=
-      b.constant() * array(a.coefficients().subspan(1));
-  double* __restrict out = product.coefficients_.data();
-  const double* __restrict from = b.coefficients_.data();
-  for (std::size_t i = 1; i < std::min(a.coefficients_.size(), m.count_to(m.degree() - 1)); ++i) {
-    const double x = a.coefficients_[i];
-    if (x == 0) continue;
-    const std::size_t terms = std::min(b.coefficients_.size(), m.count_to(m.degree() - m.degree_of(i)));
-    const std::uint32_t* __restrict to = m.products(i);
-    for (std::size_t j = 1; j < terms; ++j) out[to[j]] += x * from[j];
+  product.monomials_ = f.monomials_;
+  product.coefficients_.resize(f.coefficients_.size());
+  Values sizes, f_sizes{};
+  kernels().take_multiple(product.coefficients_.data(), factor.data(), f.coefficients_.data(), f.terms(), sizes.data());
+  if (!is_zero(radius.data())) kernels().sum_sizes(f.coefficients_.data(), f.terms(), f_sizes.data());
+  for (std::size_t k = 0; k < boxes; ++k) {
+    const double of_radius = radius[k] > 0 ? radius[k] * ((f_sizes[k] + f.radius_[k]) * up) : 0.0;
+    product.radius_[k] = clean((std::abs(factor[k]) * f.radius_[k] + of_radius + epsilon * sizes[k] + underflow) * up);
   }
-  double size_a = 0, size_b = 0, cut = 0;
-  for (int i = 0; i <= degree_a; ++i) {
-    size_a += norms_a[std::size_t(i)];
-    for (int j = std::max(0, m.degree() - i + 1); j <= degree_b; ++j)
-      cut += norms_a[std::size_t(i)] * norms_b[std::size_t(j)];
-  }
-  for (int j = 0; j <= degree_b; ++j) size_b += norms_b[std::size_t(j)];
-  // A coefficient is the sum of 2^degree products at most: that many exponents divide a monomial.
-  const double rounding = epsilon * double(std::size_t(2) << m.degree()) * size_a * size_b;
-  product.radius_ = clean((cut + rounding + a.radius_ * (size_b + b.radius_) + b.radius_ * size_a + underflow) * up);
   return product;
 }
 
-TaylorModel composed(const TaylorModel& t, std::span<const double> series) {
-  TaylorModel sum(series.back());
+TaylorModel operator*(const TaylorModel& a, const TaylorModel& b) {
+  if (a.terms() > b.terms()) return b * a;
+  if (a.terms() == 1) {
+    Values factor;
+    std::copy_n(a.coefficients_.begin(), boxes, factor.begin());
+    return scaled(factor, a.radius_, b);
+  }
+  // A rotation's entries are functions of three variables: most of their coefficients are zero.
+  if (a.terms() == b.terms() && large_terms(b) < large_terms(a)) return b * a;
+  const Monomials& m = *a.monomials_;
+  const int degree_a = m.degree_of(a.terms() - 1), degree_b = m.degree_of(b.terms() - 1);
+  TaylorModel product;
+  product.monomials_ = &m;
+  product.coefficients_.resize(boxes * m.count_to(std::min(m.degree(), degree_a + degree_b)));
+  // Products with the constants stand side by side.
+  double* out = product.coefficients_.data();
+  std::array<Values, 2> sizes;
+  kernels().take_multiple(out, a.coefficients_.data(), b.coefficients_.data(), b.terms(), sizes.front().data());
+  std::fill(product.coefficients_.begin() + std::ptrdiff_t(b.coefficients_.size()), product.coefficients_.end(), 0.0);
+  kernels().add_multiple(out + boxes, b.coefficients_.data(), a.coefficients_.data() + boxes, a.terms() - 1,
+                         sizes.front().data());
+  const ProductTable table{m.products(0), m.first_products().data(), m.counts().data(), m.degree()};
+  kernels().add_products(out, a.coefficients_.data(), a.terms(), b.coefficients_.data(), b.terms(), table);
+  const Norms norms_a = norms_of(a), norms_b = norms_of(b);
+  // A coefficient is the sum of 2^degree products at most: that many exponents divide a monomial.
+  const double products = epsilon * double(std::size_t(2) << m.degree());
+  for (std::size_t k = 0; k < boxes; ++k) {
+    double size_a = 0, size_b = 0, cut = 0;
+    for (int i = 0; i <= degree_a; ++i) {
+      size_a += norms_a[std::size_t(i)][k];
+      for (int j = std::max(0, m.degree() - i + 1); j <= degree_b; ++j)
+        cut += norms_a[std::size_t(i)][k] * norms_b[std::size_t(j)][k];
+    }
+    for (int j = 0; j <= degree_b; ++j) size_b += norms_b[std::size_t(j)][k];
+    product.radius_[k] = clean((cut + products * size_a * size_b + a.radius_[k] * (size_b + b.radius_[k]) +
+                                b.radius_[k] * size_a + underflow) *
+                               up);
+  }
+  return product;
+}
+
+TaylorModel composed(const TaylorModel& t, std::span<const Values> series) {
+  TaylorModel sum = TaylorModel::constants(series.back());
   for (std::size_t k = series.size() - 1; k-- > 0;) {
     sum = sum * t;
-    sum += TaylorModel(series[k]);
+    sum += TaylorModel::constants(series[k]);
   }
   return sum;
 }
 
+namespace {
+
+using Series = std::array<Values, Monomials::most_degree + 1>;
+
+int degree_of_series(const TaylorModel& f) { return f.monomials() == nullptr ? 1 : f.monomials()->degree(); }
+
+/// f = (1 + t) / scale on each box, |t| ≤ tau.
+struct AboutOne {
+  Values scale, tau;
+  TaylorModel t;
+
+  explicit AboutOne(const TaylorModel& f)
+      : scale(each([&](std::size_t k) { return 1 / f.constant(k); })), t(f * TaylorModel::constants(scale)) {
+    t -= TaylorModel(1.0);
+    const Values variation = t.variations();
+    tau = each([&](std::size_t k) { return (std::abs(t.constant(k)) + variation[k] + t.radius(k)) * up; });
+  }
+};
+
+}  // namespace
+
 TaylorModel inverse(const TaylorModel& f) {
-  const double scale = 1 / f.constant(), lower = f.lower(), upper = f.upper();
-  if (!f.known() || !std::isfinite(scale) || !(lower > 0 || upper < 0)) return TaylorModel::unknown();
-  TaylorModel t = f * TaylorModel(scale);
-  t -= TaylorModel(1.0);
-  const double tau = (std::abs(t.constant()) + t.variation() + t.radius()) * up;
-  if (!(tau < widest)) return TaylorModel::between(1 / upper * (1 - 2 * epsilon), 1 / lower * (1 + 2 * epsilon));
-  const int degree = f.monomials_ == nullptr ? 1 : f.monomials_->degree();
-  std::array<double, Monomials::most_degree + 1> series{};
-  for (int k = 0; k <= degree; ++k) series[std::size_t(k)] = k % 2 == 0 ? 1 : -1;
-  const double rest = std::pow(tau, degree + 1) / (1 - tau);
-  return composed(t, std::span(series).first(std::size_t(degree + 1))).widened(rest * up) * TaylorModel(scale);
+  const Values lower = f.lowers(), upper = f.uppers();
+  const AboutOne about(f);
+  const int degree = degree_of_series(f);
+  Series series{};
+  for (int k = 0; k <= degree; ++k) series[std::size_t(k)] = all(k % 2 == 0 ? 1 : -1);
+  const Values rest = each([&](std::size_t k) { return std::pow(about.tau[k], degree + 1) / (1 - about.tau[k]) * up; });
+  TaylorModel result = composed(about.t, std::span(series).first(std::size_t(degree + 1))).widened(rest) *
+                       TaylorModel::constants(about.scale);
+  for (std::size_t k = 0; k < boxes; ++k) {
+    if (!f.known(k) || !std::isfinite(about.scale[k]) || !(lower[k] > 0 || upper[k] < 0)) result.put_unknown(k);
+    else if (!(about.tau[k] < widest))
+      result.put_between(k, 1 / upper[k] * (1 - 2 * epsilon), 1 / lower[k] * (1 + 2 * epsilon));
+  }
+  return result;
 }
 
 TaylorModel sqrt(const TaylorModel& f) {
-  const double upper = f.upper(), lower = std::max(0.0, f.lower());
-  if (!f.known() || !(upper >= 0)) return TaylorModel::unknown();
-  const auto by_range = [&] {
-    return TaylorModel::between(std::sqrt(lower) * (1 - 2 * epsilon), std::sqrt(upper) * (1 + 2 * epsilon));
-  };
-  const double scale = 1 / f.constant();
-  if (!(lower > 0) || !std::isfinite(scale) || !(scale > 0)) return by_range();
-  TaylorModel t = f * TaylorModel(scale);
-  t -= TaylorModel(1.0);
-  const double tau = (std::abs(t.constant()) + t.variation() + t.radius()) * up;
-  if (!(tau < widest)) return by_range();
-  const int degree = f.monomials_ == nullptr ? 1 : f.monomials_->degree();
+  const Values lower = f.lowers(), upper = f.uppers();
+  const AboutOne about(f);
+  const int degree = degree_of_series(f);
   // Binomial coefficients of 1/2 are whole numbers over powers of 2: exact.
-  std::array<double, Monomials::most_degree + 1> series{};
+  Series series{};
   double next = 1;
   for (int k = 0; k <= degree; ++k) {
-    series[std::size_t(k)] = next;
+    series[std::size_t(k)] = all(next);
     next *= (0.5 - k) / (k + 1);
   }
-  const double rest = std::abs(next) * std::pow(tau, degree + 1) * std::pow(1 - tau, -0.5 - degree);
-  const TaylorModel root = composed(t, std::span(series).first(std::size_t(degree + 1))).widened(rest * up);
-  const double factor = std::sqrt(f.constant());
+  const Values rest = each([&](std::size_t k) {
+    return std::abs(next) * std::pow(about.tau[k], degree + 1) * std::pow(1 - about.tau[k], -0.5 - degree);
+  });
+  const Values factor = each([&](std::size_t k) { return std::sqrt(f.constant(k)); });
+  const TaylorModel root =
+      composed(about.t, std::span(series).first(std::size_t(degree + 1))).widened(each([&](std::size_t k) {
+        return rest[k] * up;
+      }));
   // √f = √(1 + t) / √scale, and the factor is that to a few roundings.
-  return (root * TaylorModel(factor)).widened(4 * epsilon * factor * (std::sqrt(1 + tau) + rest));
+  TaylorModel result = (root * TaylorModel::constants(factor)).widened(each([&](std::size_t k) {
+    return 4 * epsilon * factor[k] * (std::sqrt(1 + about.tau[k]) + rest[k]);
+  }));
+  for (std::size_t k = 0; k < boxes; ++k) {
+    const double least = std::max(0.0, lower[k]), scale = about.scale[k];
+    if (!f.known(k) || !(upper[k] >= 0)) result.put_unknown(k);
+    else if (!(least > 0) || !std::isfinite(scale) || !(scale > 0) || !(about.tau[k] < widest))
+      result.put_between(k, std::sqrt(least) * (1 - 2 * epsilon), std::sqrt(upper[k]) * (1 + 2 * epsilon));
+  }
+  return result;
 }
 
 namespace {
 
-/// sin (shift 0) or cos (shift 1) about the middle of f.
+/// sin (shift 0) or cos (shift 1) about the middle of f, t the rest of f.
 TaylorModel wave(const TaylorModel& f, const TaylorModel& t, int shift) {
-  const double c = f.constant();
-  const double values[4] = {std::sin(c), std::cos(c), -std::sin(c), -std::cos(c)};
-  const int degree = f.monomials() == nullptr ? 1 : f.monomials()->degree();
-  std::array<double, Monomials::most_degree + 1> series{};
+  const Values sine = each([&](std::size_t k) { return std::sin(f.constant(k)); }),
+               cosine = each([&](std::size_t k) { return std::cos(f.constant(k)); });
+  const int degree = degree_of_series(f);
+  Series series{};
   double factorial = 1;
   for (int k = 0; k <= degree; ++k) {
-    series[std::size_t(k)] = values[(k + shift) % 4] / factorial;
+    const int turn = (k + shift) % 4;
+    const Values& value = turn % 2 == 0 ? sine : cosine;
+    series[std::size_t(k)] = each([&](std::size_t box) { return (turn < 2 ? value[box] : -value[box]) / factorial; });
     factorial *= k + 1;
   }
-  const double tau = (t.variation() + t.radius()) * up;
+  const Values variation = t.variations();
   // Series and rest; its coefficients are rounded by a few units, and tau is an angle of any size.
-  const double rest = std::pow(tau, degree + 1) / factorial * up + 8 * epsilon * std::exp(std::min(tau, 700.0));
-  return composed(t, std::span(series).first(std::size_t(degree + 1))).widened(rest);
+  TaylorModel result = composed(t, std::span(series).first(std::size_t(degree + 1))).widened(each([&](std::size_t k) {
+    const double tau = (variation[k] + t.radius(k)) * up;
+    return std::pow(tau, degree + 1) / factorial * up + 8 * epsilon * std::exp(std::min(tau, 700.0));
+  }));
+  for (std::size_t k = 0; k < boxes; ++k)
+    if (!f.known(k)) result.put_unknown(k);
+  return result;
 }
 
 }  // namespace
 
 TaylorModel TaylorModel::without_constant() const {
   TaylorModel t = *this;
-  t.coefficients_[0] = 0;
+  std::fill_n(t.coefficients_.begin(), boxes, 0.0);
   return t;
 }
 
-TaylorModel sin(const TaylorModel& f) { return f.known() ? wave(f, f.without_constant(), 0) : TaylorModel::unknown(); }
+TaylorModel sin(const TaylorModel& f) { return wave(f, f.without_constant(), 0); }
 
-TaylorModel cos(const TaylorModel& f) { return f.known() ? wave(f, f.without_constant(), 1) : TaylorModel::unknown(); }
+TaylorModel cos(const TaylorModel& f) { return wave(f, f.without_constant(), 1); }
 
 }  // namespace posewright

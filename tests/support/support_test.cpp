@@ -1,7 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
+#include <cstdint>
 #include <numeric>
 #include <stdexcept>
 
@@ -11,10 +13,28 @@
 #include "posewright/support/random.hpp"
 #include "posewright/support/sha256.hpp"
 #include "posewright/support/text_file.hpp"
+#include "src/support/sha256/blocks.hpp"
 #include "tests/kit/temporary_folder.hpp"
 
 namespace posewright {
 namespace {
+
+#if defined(__x86_64__)
+TEST(Sha256, IsTheSameByTheInstructionsOfTheProcessor) {
+  if (!has_sha_instructions()) GTEST_SKIP() << "no such instructions here";
+  Random random(3, 0);
+  std::array<std::uint32_t, 64> constants;
+  for (std::uint32_t& k : constants) k = std::uint32_t(random.uniform() * 4294967295.0);
+  for (std::size_t blocks = 0; blocks < 5; ++blocks) {
+    std::vector<unsigned char> bytes(64 * blocks);
+    for (unsigned char& byte : bytes) byte = static_cast<unsigned char>(random.index(256));
+    std::array<std::uint32_t, 8> one{1, 2, 3, 4, 5, 6, 7, 0xffffffff}, other = one;
+    compress_blocks(one.data(), bytes.data(), blocks, constants.data());
+    compress_blocks_sha(other.data(), bytes.data(), blocks, constants.data());
+    EXPECT_EQ(one, other) << blocks;
+  }
+}
+#endif
 
 TEST(Sha256, EqualsThePublishedVectors) {
   // NIST, examples of FIPS 180-4: one block, none, two blocks, many.

@@ -5,17 +5,19 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "posewright/support/random.hpp"
+#include "src/support/taylor/kernels.hpp"
 #include "tests/kit/taylor_value.hpp"
 
 namespace posewright {
 namespace {
 
-constexpr int places = 40;
+constexpr std::size_t places = 40, boxes = TaylorModel::boxes;
 
-/// A function as a model and, at some places of the box, as numbers.
+/// A function as a model and, at some places of each box, as numbers: box after box.
 struct Pair {
   TaylorModel model;
   std::vector<long double> values;
@@ -26,28 +28,44 @@ class Expressions {
  public:
   Expressions(int variables, int degree, double width, Random& random) : random_(random) {
     const Monomials& monomials = Monomials::of(variables, degree);
-    for (int i = 0; i < places; ++i) {
+    for (std::size_t i = 0; i < places; ++i) {
       places_.emplace_back();
       for (int k = 0; k < variables; ++k)
         places_.back().push_back(i % 4 == 0 ? (random.uniform() < 0.5 ? -1 : 1) : random.uniform(-1, 1));
     }
+    // Boxes of all widths side by side, in any order.
+    const std::size_t widest = std::size_t(random.index(int(boxes)));
     for (int k = 0; k < variables; ++k) {
-      const double lower = random.uniform(-2, 2), upper = lower + width * random.uniform();
+      TaylorModel::Values lower, upper;
+      for (std::size_t box = 0; box < boxes; ++box) {
+        lower[box] = random.uniform(-2, 2);
+        upper[box] = lower[box] + width * std::pow(10.0, -0.5 * double((box + widest) % boxes)) * random.uniform();
+      }
       Pair x{TaylorModel::variable(monomials, k, lower, upper), {}};
-      for (const auto& place : places_)
-        x.values.push_back((lower + (static_cast<long double>(upper))) / 2 +
-                           (static_cast<long double>(upper) - lower) / 2 * place[std::size_t(k)]);
+      for (std::size_t box = 0; box < boxes; ++box)
+        for (const auto& place : places_)
+          x.values.push_back((lower[box] + (static_cast<long double>(upper[box]))) / 2 +
+                             (static_cast<long double>(upper[box]) - lower[box]) / 2 * place[std::size_t(k)]);
       all.push_back(std::move(x));
     }
+    // A number that is not known exactly.
+    Pair between;
+    for (std::size_t box = 0; box < boxes; ++box) {
+      const double lower = random.uniform(-2, 2), upper = lower + width * random.uniform();
+      between.model.put_between(box, lower, upper);
+      for (std::size_t i = 0; i < places; ++i) between.values.push_back(random.uniform(lower, upper));
+    }
+    all.push_back(std::move(between));
   }
 
   void grow() {
     const Pair &a = any(), &b = any();
     Pair f;
     const int what = random_.index(9);
-    const double factor = std::pow(10.0, random_.uniform(-3, 3));
+    TaylorModel::Values factor;
+    for (double& x : factor) x = random_.uniform() < 0.2 ? 0.0 : std::pow(10.0, random_.uniform(-3, 3));
     const auto each = [&](const auto& of) {
-      for (std::size_t i = 0; i < places; ++i) f.values.push_back(of(a.values[i], b.values[i]));
+      for (std::size_t i = 0; i < boxes * places; ++i) f.values.push_back(of(a.values[i], b.values[i]));
     };
     if (what == 0) f.model = a.model + b.model, each([](auto x, auto y) { return x + y; });
     else if (what == 1) f.model = a.model - b.model, each([](auto x, auto y) { return x - y; });
@@ -59,7 +77,8 @@ class Expressions {
     else {
       f.model = a.model;
       f.model.add(factor, b.model);
-      each([&](auto x, auto y) { return x + factor * y; });
+      for (std::size_t i = 0; i < boxes * places; ++i)
+        f.values.push_back(a.values[i] + (factor[i / places] == 0 ? 0.0L : factor[i / places] * b.values[i]));
     }
     all.push_back(std::move(f));
   }
@@ -81,21 +100,104 @@ TEST(TaylorModel, HoldsEveryValueOfRandomExpressions) {
     Expressions e(variables, 1 + random.index(variables < 4 ? 7 : 4), std::pow(10.0, random.uniform(-6, 0.5)), random);
     for (int step = 0; step < 12; ++step) e.grow();
     for (const Pair& f : e.all) {
-      known += int(f.model.known());
-      if (!f.model.known()) continue;
-      for (std::size_t i = 0; i < places; ++i) {
-        const long double value = f.values[i];
-        // Where a root or a quotient is not defined nothing is stated.
-        if (!std::isfinite(double(value)) || std::abs(value) > 1e100L) continue;
-        ++judged;
-        ASSERT_LE(std::abs(value - taylor_value(f.model, e.where()[i])), f.model.radius()) << "trial " << trial;
-        ASSERT_LE(value, f.model.upper());
-        ASSERT_GE(value, f.model.lower());
+      const TaylorModel::Values lower = f.model.lowers(), upper = f.model.uppers();
+      for (std::size_t box = 0; box < boxes; ++box) {
+        known += int(f.model.known(box));
+        if (!f.model.known(box)) continue;
+        for (std::size_t i = 0; i < places; ++i) {
+          const long double value = f.values[box * places + i];
+          // Where a root or a quotient is not defined nothing is stated.
+          if (!std::isfinite(double(value)) || std::abs(value) > 1e100L) continue;
+          ++judged;
+          ASSERT_LE(std::abs(value - taylor_value(f.model, e.where()[i], box)), f.model.radius(box))
+              << "trial " << trial << ", box " << box;
+          ASSERT_LE(value, upper[box]);
+          ASSERT_GE(value, lower[box]);
+          ASSERT_LE(std::abs(value), f.model.farthest()[box]);
+        }
       }
     }
   }
-  EXPECT_GT(known, 450);
-  EXPECT_GT(judged, 15000);
+  EXPECT_GT(known, 450 * int(boxes));
+  EXPECT_GT(judged, 15000 * int(boxes));
+}
+
+// What is found of a box must not depend on those beside it, but for the order in which a sum is rounded.
+TEST(TaylorModel, SaysTheSameOfABoxByItself) {
+  const Monomials& m = Monomials::of(2, 4);
+  const auto function = [&](const TaylorModel::Values& lower, const TaylorModel::Values& upper) {
+    const TaylorModel x = TaylorModel::variable(m, 0, lower, upper), y = TaylorModel::variable(m, 1, lower, upper);
+    return sqrt(x + TaylorModel(1.0)) * inverse(y) + sin(x * y);
+  };
+  // Some hold 0, others are beyond the root's range, others small.
+  const TaylorModel::Values lower = {0.5, -0.1, 1, -3, 2, 0.1, -0.9, 1}, upper = {0.6, 0.1, 2, -2.9, 2.1, 3, -0.8, 1};
+  const TaylorModel together = function(lower, upper);
+  int known = 0;
+  for (std::size_t box = 0; box < boxes; ++box) {
+    TaylorModel::Values l, u;
+    l.fill(lower[box]);
+    u.fill(upper[box]);
+    const TaylorModel alone = function(l, u);
+    EXPECT_EQ(alone.known(), together.known(box)) << box;
+    if (!alone.known()) continue;
+    ++known;
+    EXPECT_NEAR(alone.radius(), together.radius(box), 1e-9 * alone.radius()) << box;
+    for (std::size_t i = 0; i < alone.terms(); ++i)
+      EXPECT_NEAR(alone.coefficient(i), together.coefficient(i, box), 1e-13) << box;
+  }
+  EXPECT_EQ(known, 6);
+}
+
+TEST(TaylorModel, KernelsOfAllInstructionsComputeTheSameBits) {
+  const Monomials& m = Monomials::of(3, 4);
+  const std::size_t terms = m.count(), terms_a = 17;
+  Random random(7, 0);
+  const auto drawn = [&](std::size_t size) {
+    std::vector<double> x(size);
+    for (double& one : x) one = random.uniform(-1, 1);
+    return x;
+  };
+  const std::vector<double> start = drawn(boxes * terms), a = drawn(boxes * terms_a), b = drawn(boxes * terms);
+  // By the definition: products, sum, sizes; the first of a is the factor.
+  std::vector<double> products = start, sum = start, multiple(boxes * terms);
+  std::vector<double> of_sum(2 * boxes, 0.0), of_multiple(boxes, 0.0);
+  for (std::size_t i = 1; i < terms_a; ++i)
+    for (std::size_t j = 1; j < terms; ++j)
+      for (std::size_t to = 0; to < terms; ++to) {
+        bool is_product = true;
+        for (std::size_t v = 0; v < 3; ++v)
+          is_product = is_product && m.exponents(i)[v] + m.exponents(j)[v] == m.exponents(to)[v];
+        for (std::size_t k = 0; is_product && k < boxes; ++k)
+          products[boxes * to + k] += a[boxes * i + k] * b[boxes * j + k];
+      }
+  for (std::size_t j = 0; j < terms; ++j)
+    for (std::size_t k = 0; k < boxes; ++k) {
+      sum[boxes * j + k] += a[k] * b[boxes * j + k];
+      multiple[boxes * j + k] = a[k] * b[boxes * j + k];
+      of_sum[k] += std::abs(b[boxes * j + k]);
+      of_sum[boxes + k] += std::abs(sum[boxes * j + k]);
+      of_multiple[k] += std::abs(multiple[boxes * j + k]);
+    }
+  const auto check = [&](const TaylorKernels& kernels) {
+    std::vector<double> out = start, sizes(2 * boxes), one(boxes);
+    kernels.add_products(out.data(), a.data(), terms_a, b.data(), terms,
+                         {m.products(0), m.first_products().data(), m.counts().data(), m.degree()});
+    EXPECT_EQ(out, products);
+    out = start;
+    kernels.add_multiple(out.data(), a.data(), b.data(), terms, sizes.data());
+    EXPECT_EQ(out, sum);
+    EXPECT_EQ(sizes, of_sum);
+    kernels.take_multiple(out.data(), a.data(), b.data(), terms, one.data());
+    EXPECT_EQ(out, multiple);
+    EXPECT_EQ(one, of_multiple);
+    kernels.sum_sizes(b.data(), terms, one.data());
+    EXPECT_EQ(one, std::vector<double>(of_sum.begin(), of_sum.begin() + boxes));
+  };
+  check(taylor_kernels_sse2);
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx2")) check(taylor_kernels_avx2);
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl")) check(taylor_kernels_avx512);
+#endif
 }
 
 TEST(TaylorModel, IsAsNearAsItsDegree) {

@@ -3,6 +3,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "posewright/support/monitor.hpp"
@@ -37,6 +38,12 @@ class BoxJudge {
   /// Fills the box's bound and, where that exceeds `enough`, the axis to halve it along; values that exceed `found`
   /// take its place. The result must not depend on what was judged before.
   virtual void judge(SearchBox& box, double enough, LargestFound& found) = 0;
+  /// So many boxes take little longer together than one.
+  virtual std::size_t together() const { return 1; }
+  /// Judges each; those of one call may share rounding. @param found  one a box
+  virtual void judge_together(std::span<SearchBox> boxes, double enough, std::span<LargestFound> found) {
+    for (std::size_t i = 0; i < boxes.size(); ++i) judge(boxes[i], enough, found[i]);
+  }
 };
 
 struct BoxSearchOptions {

@@ -1,0 +1,2 @@
+#define TAYLOR_KERNELS taylor_kernels_avx2
+#include "kernels.inl"

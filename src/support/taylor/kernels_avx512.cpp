@@ -1,0 +1,2 @@
+#define TAYLOR_KERNELS taylor_kernels_avx512
+#include "kernels.inl"

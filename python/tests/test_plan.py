@@ -18,6 +18,23 @@ def test_the_command_line_gives_the_same_plan(program, examples, tmp_path, name,
     assert plan.to_csv() == (tmp_path / "poses.csv").read_text()
 
 
+def test_candidates_of_a_cell_are_kept_where_the_environment_says(examples, tmp_path, monkeypatch):
+    file = examples / "cell" / "problem.yaml"
+    options = {"poses": 14, "candidates": 150, "restarts": 1, "method": "exchange", "criterion": "o1", "seed": 5}
+
+    def plan():
+        return without_times(pw.plan(pw.Problem(file), **options).to_dict())
+
+    monkeypatch.setenv("POSEWRIGHT_CACHE", "off")
+    anew = plan()
+    monkeypatch.setenv("POSEWRIGHT_CACHE", str(tmp_path / "kept"))
+    assert plan() == anew
+    (result,) = (tmp_path / "kept").glob("*.result")
+    before = result.stat().st_mtime_ns
+    assert plan() == anew
+    assert result.stat().st_mtime_ns > before  # it was used
+
+
 def test_attributes_say_what_the_file_says(small_plan):
     written = small_plan.to_dict()
     assert json.loads(small_plan.to_json()) == written

@@ -11,7 +11,7 @@ import sys
 import tempfile
 import unittest
 
-program, sources = sys.argv[1:3]
+program, sources = (str(pathlib.Path(word).resolve()) for word in sys.argv[1:3])
 cell = pathlib.Path(sources) / "examples" / "cell" / "problem.yaml"
 names = {"POSEWRIGHT_CACHE", "XDG_CACHE_HOME"}
 

@@ -225,15 +225,16 @@ class SeveralProcesses(unittest.TestCase):
         files = ["-o", "-", "--poses-csv", "-"]
         self.the_same_in_three_processes("plan", "kr270/problem.yaml", "--method", "tabu", "--restarts", "5", "--candidates", "60",
                                          "--proof-time", "0", *files)
-        # Six axes: boxes that take some milliseconds each, in three rounds.
+        # Six axes: boxes that take half a millisecond each, eight a task, in three rounds.
         shutil.copytree(SOURCE / "examples" / "telescope", self.folder / "telescope")
         boxes = ["plan", "telescope/problem.yaml", "--variant", "rigid", "--method", "greedy", "--candidates", "1000",
                  "--poses", "30", "--gap", "95", *files]
         alone = self.result(0, boxes)
-        self.assertGreater(alone["certificate"]["workspace"]["boxes"], 64)
+        boxes_alone = alone["certificate"]["workspace"]["boxes"]
+        self.assertGreater(boxes_alone, 64)
         done = run(self.folder, 3, *boxes, "--json", "--verbose", "--threads", "1")
         self.assertEqual(without_times(json.loads(done.stdout)), alone)
-        self.assertGreater(int(re.search(r"(\d+) tasks done", done.stderr)[1]), 64)
+        self.assertGreaterEqual(int(re.search(r"(\d+) tasks done", done.stderr)[1]), boxes_alone // 8)
 
     def files_of_fleet(self):
         return [without_times(json.loads((self.folder / f"{name}.plan.json").read_text(encoding="utf-8")))

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::align_val_t line{64};
 // Blocks have 2^k bytes, from a line up to these; larger ones, and more of a size, are the general allocator's.
-constexpr std::size_t sizes = 16, most_blocks = 512;
+constexpr std::size_t size_classes = 16, most_blocks = 512;
 
 /// Blocks that one thread gave back, by size.
 struct FreeBlocks {
@@ -18,7 +18,7 @@ struct FreeBlocks {
     std::array<void*, most_blocks> blocks;
     std::size_t count = 0;
   };
-  std::array<Stack, sizes> of;
+  std::array<Stack, size_classes> of;
 
   FreeBlocks() = default;
   ~FreeBlocks();
@@ -40,7 +40,7 @@ std::size_t size_class(std::size_t bytes) { return std::size_t(std::bit_width((b
 
 void* take_lines(std::size_t bytes) {
   const std::size_t k = size_class(bytes);
-  if (k >= sizes) return ::operator new(bytes, line);
+  if (k >= size_classes) return ::operator new(bytes, line);
   if (!is_gone)
     if (FreeBlocks::Stack& stack = free_blocks.of[k]; stack.count > 0) return stack.blocks[--stack.count];
   return ::operator new (std::size_t{1} << k, line);
@@ -48,7 +48,7 @@ void* take_lines(std::size_t bytes) {
 
 void give_back_lines(void* block, std::size_t bytes) {
   const std::size_t k = size_class(bytes);
-  if (k < sizes && !is_gone)
+  if (k < size_classes && !is_gone)
     if (FreeBlocks::Stack& stack = free_blocks.of[k]; stack.count < most_blocks) {
       stack.blocks[stack.count++] = block;
       return;

@@ -9,6 +9,7 @@
 #include "posewright/calibration/rigid_fit.hpp"
 #include "posewright/lists/read_poses.hpp"
 #include "posewright/lists/samples.hpp"
+#include "posewright/model/instrument_choice.hpp"
 #include "posewright/model/instrument_view.hpp"
 #include "posewright/model/rotation_vector.hpp"
 #include "posewright/problem/units.hpp"
@@ -34,8 +35,19 @@ MeasuredColumns::MeasuredColumns(const std::string& bytes, const std::string& fi
       table_(samples_or_csv(bytes.starts_with("\xef\xbb\xbf") ? bytes.substr(3) : bytes, file)) {
   index_columns();
   if (InstrumentView view = view_of(measurement); view.fits_pose) markers_ = std::move(view.targets);
+  find_joined(measurement);
   find_readings();
   read_configurations(bytes);
+}
+
+void MeasuredColumns::find_joined(const MeasurementSpec& measurement) {
+  const auto* list = instruments_of(measurement);
+  for (std::size_t k = 0; k < (list == nullptr ? 1 : list->size()); ++k) {
+    const MeasurementSpec& one = list == nullptr ? measurement : (*list)[k];
+    if (!joins_tips(one)) continue;
+    for (const Reading& reading : model_.readings())
+      if (list == nullptr || reading.name.starts_with(reading_in(one.name, ""))) joined_[reading.name] = double(k);
+  }
 }
 
 void MeasuredColumns::index_columns() {
@@ -51,7 +63,7 @@ void MeasuredColumns::find_readings() {
   std::string names;
   orientation_ = OrientationColumns("pose", table_.names, header());
   const auto given = [&](const Reading& reading) {
-    return has(reading.name) || (turned() && reading.name.starts_with("pose.r"));
+    return has(reading.name) || joined_.count(reading.name) > 0 || (turned() && reading.name.starts_with("pose.r"));
   };
   for (const Reading& reading : model_.readings()) {
     found += given(reading) ? 1 : 0;
@@ -186,6 +198,13 @@ Eigen::VectorXd MeasuredColumns::pose_of_points(int row) const {
   return pose;
 }
 
+double MeasuredColumns::reading_of(int row, const Reading& reading) const {
+  const auto joined = joined_.find(reading.name);
+  if (has(reading.name) || joined == joined_.end()) return value(row, reading.name, reading.unit);
+  const auto instrument = instrument_index(model_.coordinates());
+  return !instrument || configuration(row)[*instrument] == joined->second ? 0.0 : not_read;
+}
+
 Eigen::VectorXd MeasuredColumns::readings(int row) const {
   const auto count = Eigen::Index(model_.readings().size());
   Eigen::VectorXd all(6);
@@ -199,7 +218,7 @@ Eigen::VectorXd MeasuredColumns::readings(int row) const {
     const Reading& reading = model_.readings()[std::size_t(i)];
     const auto at = std::find(pose_names.begin(), pose_names.end(), reading.name) - pose_names.begin();
     if (at < 6 && (whole || (turned() && at > 2))) y[i] = all[at];
-    else y[i] = value(row, reading.name, reading.unit);
+    else y[i] = reading_of(row, reading);
   }
   // A whole rotation vector is one reading of three numbers.
   for (Eigen::Index i = 2; i < count; ++i)

@@ -32,12 +32,15 @@ class MeasuredColumns {
 
  private:
   void index_columns();
+  void find_joined(const MeasurementSpec& measurement);
   void find_readings();
   void read_configurations(const std::string& bytes);
   void from_actuators();
   bool has(const std::string& name) const { return column_.count(name) > 0; }
   /// NaN for an empty cell.
   double value(int row, const std::string& column, const std::string& unit) const;
+  /// 0 for joined tips without a column.
+  double reading_of(int row, const Reading& reading) const;
   /// Columns of an orientation in another form.
   Eigen::Vector3d rotation_vector(int row) const;
   bool turned() const { return orientation_.found() && orientation().kind != OrientationForm::vector; }
@@ -49,8 +52,9 @@ class MeasuredColumns {
   PoseTable table_;
   std::map<std::string, std::size_t> column_;
   std::vector<std::vector<double>> configurations_;
-  std::vector<TargetSpec> markers_;  ///< of a photogrammetric pose that is given by its points; else empty
-  OrientationColumns orientation_;   ///< of the readings
+  std::vector<TargetSpec> markers_;       ///< of a photogrammetric pose that is given by its points; else empty
+  OrientationColumns orientation_;        ///< of the readings
+  std::map<std::string, double> joined_;  ///< readings of joined tips, 0 without a column: their instrument
   std::vector<std::string> notes_;
 };
 

@@ -238,7 +238,9 @@ MeasuredData parse_measured_data(const std::string& text, const std::filesystem:
       --data.rows;
       continue;
     }
-    suspicious.add(row.id, row.line, row.q, row.y);
+    // Joined tips read 0 at all joints.
+    const bool joined = joins_tips(instrument_at(problem.measurement, model.coordinates(), row.q));
+    suspicious.add(row.id, row.line, row.q, joined ? Eigen::VectorXd::Constant(row.y.size(), std::nan("")) : row.y);
     if (platform)
       if (std::optional<PlatformImage> image = image_of(columns, i, row, *platform, model))
         data.images.push_back(std::move(*image));

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "posewright/lists/measured_data.hpp"
 #include "posewright/model/model_factory.hpp"
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/support/error.hpp"
@@ -177,6 +178,34 @@ TEST_F(Closures, BoltedHandsStayTogetherInAllComponents) {
     ASSERT_TRUE(model->predict(found[i], {}, reading));
     EXPECT_LT(reading.norm(), 1e-9);
   }
+}
+
+TEST_F(Closures, DataOfTheLoopNeedNoColumnsOfItsReadings) {
+  const Problem problem = arms();
+  const auto model = make_model(problem);
+  const Configurations found = drawn(problem, *model, 40);
+  std::string names = "instrument", encoders, zeros;
+  for (std::size_t k = 0; k < 4; ++k) names += "," + model->coordinates()[k].name + " [rad]";
+  for (std::size_t i = 0; i < found.count(); ++i) {
+    const bool tracker = found[i].back() == 1;
+    std::string line = tracker ? "tracker" : "loop";
+    for (std::size_t k = 0; k < 4; ++k) line += fmt::format(",{:.17g}", found[i][k]);
+    const std::string read = tracker ? fmt::format(",{},0.3,0", 0.01 * double(i)) : ",,,";
+    encoders += line + read + "\n";
+    zeros += line + read + (tracker ? ",," : ",0,0") + "\n";
+  }
+  names += ",tracker.target.x [m],tracker.target.y [m],tracker.target.z [m]";
+  const auto read = [&](const std::string& text) { return parse_measured_data(text, "data.csv", problem, *model); };
+  const MeasuredData without = read(names + "\n" + encoders),
+                     with = read(names + ",loop.pose.x [m],loop.pose.y [m]\n" + zeros);
+  ASSERT_EQ(without.poses.size(), with.poses.size());
+  for (std::size_t i = 0; i < with.poses.size(); ++i)
+    for (Eigen::Index r = 0; r < with.poses[i].y.size(); ++r)
+      EXPECT_TRUE(without.poses[i].y[r] == with.poses[i].y[r] ||
+                  (std::isnan(without.poses[i].y[r]) && std::isnan(with.poses[i].y[r])));
+  // Nothing is said of targets that were lost, nor of readings that stayed.
+  EXPECT_THAT(without.notes, testing::IsEmpty());
+  EXPECT_THAT(with.notes, testing::IsEmpty());
 }
 
 TEST_F(Closures, ALoopThatCannotCloseIsNamed) {

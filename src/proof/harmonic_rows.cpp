@@ -65,13 +65,19 @@ class RowsOfChoice : public HarmonicRows {
   double factor_;
 };
 
+/// @param at  of the model
+std::unique_ptr<HarmonicRows> rows_of_tip(const ExplicitModel& model, const Point& at, std::span<const int> selected,
+                                          std::string& why_not) {
+  return explicit_rows(model.tip(), model.measurement(), model.repeatability(), model.tip_parameters(), at, selected,
+                       why_not);
+}
+
 std::unique_ptr<HarmonicRows> rows_of_choice(const InstrumentChoice& model, std::span<const double> q,
                                              std::span<const int> selected, std::string& why_not) {
   const InstrumentChoice::Inside there = model.inside(model.nominal_point(q), selected);
   Point at = there.model.nominal_point(there.q);
   at.correction = there.correction;
-  auto rows = explicit_rows(there.model.tip(), there.model.measurement(), there.model.repeatability(),
-                            there.model.tip_parameters(), at, there.selected, why_not);
+  auto rows = rows_of_tip(there.model, at, there.selected, why_not);
   if (rows == nullptr) {
     const Coordinate& instrument = model.coordinates().back();
     why_not = instrument.labels[std::size_t(q.back())] + ": " + why_not;
@@ -87,8 +93,7 @@ std::unique_ptr<HarmonicRows> harmonic_expansion(const IdentificationModel& mode
   if (const auto* difference = dynamic_cast<const LoadDifference*>(&model))
     return rows_of_difference(*difference, q, selected, why_not);
   if (const auto* of_a_tip = dynamic_cast<const ExplicitModel*>(&model))
-    return explicit_rows(of_a_tip->tip(), of_a_tip->measurement(), of_a_tip->repeatability(),
-                         of_a_tip->tip_parameters(), model.nominal_point(q), selected, why_not);
+    return rows_of_tip(*of_a_tip, model.nominal_point(q), selected, why_not);
   if (const auto* choice = dynamic_cast<const InstrumentChoice*>(&model))
     return rows_of_choice(*choice, q, selected, why_not);
   if (model.tips() > 1) why_not = "readings of two configurations at a time, which have twice as many joints";

@@ -58,9 +58,10 @@ Variant place_variant(const ProblemVariant& of, const std::shared_ptr<const Cell
     variant.model->set_visibility({cell, cell->sight()});
   }
   variant.workspace = std::make_unique<Workspace>(*variant.model, of.problem, cell, monitor, robots_to_read(variant));
-  if (const std::string files = read.hex(); !files.empty() && (cell == nullptr || !cell->identity.empty()))
-    variant.workspace->identify(
-        sha256_hex(structure_of(of.problem) + structure_of(of.spec) + files + (cell == nullptr ? "" : cell->identity)));
+  // Without bodies and sights a draw takes no longer than a start of the program: none is kept.
+  if (const std::string files = read.hex();
+      variant.workspace->cut_by_cell() && !files.empty() && !cell->identity.empty())
+    variant.workspace->identify(sha256_hex(structure_of(of.problem) + structure_of(of.spec) + files + cell->identity));
   return variant;
 }
 

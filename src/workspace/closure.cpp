@@ -10,10 +10,10 @@ namespace {
 constexpr double closed = 1e-10;
 
 void add_goal(const MeasurementSpec& instrument, std::optional<double> index, std::vector<TipGoal>& goals) {
-  const auto* pose = std::get_if<PoseMeasurement>(&instrument.instrument);
-  if (pose == nullptr || !pose->joined) return;
+  if (!joins_tips(instrument)) return;
+  const auto& components = std::get<PoseMeasurement>(instrument.instrument).components;
   TipGoal goal;
-  goal.components.assign(pose->components.begin(), pose->components.end());
+  goal.components.assign(components.begin(), components.end());
   goal.instrument = index;
   goals.push_back(std::move(goal));
 }
@@ -37,7 +37,7 @@ Closure::Closure(const IdentificationModel& model, const std::vector<Coordinate>
 bool Closure::close(std::span<double> q) const {
   std::vector<char> held(q.size(), 0);
   for (std::size_t k = 0; k < q.size(); ++k)
-    held[k] = char(q[k] == coordinates_[k].lower || q[k] == coordinates_[k].upper);
+    held[k] = char(!coordinates_[k].discrete() && (q[k] == coordinates_[k].lower || q[k] == coordinates_[k].upper));
   if (std::ranges::find(held, char(1)) != held.end()) {
     std::vector<double> trial(q.begin(), q.end());
     if (mover_.move(trial, goals_, closed, held)) {

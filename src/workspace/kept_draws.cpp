@@ -8,8 +8,7 @@
 namespace posewright {
 
 std::string name_of_draw(const Workspace& workspace, const SamplingOptions& options) {
-  // Without bodies and sights a draw takes no longer than a start of the program.
-  if (workspace.identity().empty() || !workspace.cut_by_cell()) return "";
+  if (workspace.identity().empty()) return "";
   static const std::string build = build_identity();
   if (build.empty()) return "";
   ByteWriter all;

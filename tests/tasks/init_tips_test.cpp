@@ -75,6 +75,12 @@ TEST(InitTips, ACameraInTheHeadIsInOnePlaceForBothBoards) {
     if (parameter.role == Role::interest) names.push_back(parameter.name);
   EXPECT_THAT(names, UnorderedElementsAre("base@head_camera.x", "base@head_camera.y", "base@head_camera.z",
                                           "base@head_camera.rx", "base@head_camera.ry", "base@head_camera.rz"));
+
+  // A required accuracy is that of the parameters that say where the camera is.
+  facts.accuracy = 1e-3;
+  const Problem required = parse_problem(init_problem(facts, made, Monitor{}).text, made, {});
+  ASSERT_EQ(required.design.require.sigma.size(), 1U);
+  EXPECT_EQ(required.design.require.sigma.front().pattern.value, "base@head_camera.?");
 }
 
 TEST(InitTips, TipsThatAreNoTwoChainsOfOneRobotAreRefused) {

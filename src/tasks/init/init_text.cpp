@@ -92,10 +92,9 @@ std::string name_of(std::string link) {
 }
 
 /// Several tips of one robot.
-std::string tips_text(const InitFacts& facts, const std::vector<InitRobot>& tips,
+std::string tips_text(const InitFacts& facts, const std::vector<InitRobot>& tips, const std::string& joints,
                       const std::filesystem::path& expanded) {
-  std::string joints, names;
-  for (const Coordinate& c : joints_of(tips)) joints += (joints.empty() ? "" : ", ") + c.name;
+  std::string names;
   const auto add = [&](const std::string& link) {
     names += fmt::format("{}{}: {}", names.empty() ? "" : ", ", name_of(link), quoted(link));
   };
@@ -112,10 +111,10 @@ std::string tips_text(const InitFacts& facts, const std::vector<InitRobot>& tips
 
 std::string robot_text(const InitFacts& facts, const std::vector<InitRobot>& tips,
                        const std::filesystem::path& expanded) {
-  if (tips.size() > 1) return tips_text(facts, tips, expanded);
-  const InitRobot& robot = tips.front();
   std::string joints;
-  for (const Coordinate& c : robot.chain.coordinates) joints += (joints.empty() ? "" : ", ") + c.name;
+  for (const Coordinate& c : joints_of(tips)) joints += (joints.empty() ? "" : ", ") + c.name;
+  if (tips.size() > 1) return tips_text(facts, tips, joints, expanded);
+  const InitRobot& robot = tips.front();
   std::string text = fmt::format(
       "# 1. Robot: the chain from base to tip that is calibrated. The measurement frame is the frame of the base.\n"
       "# Joints: {}. The tip is at most {:.2f} m from the first one.\n",
@@ -335,55 +334,55 @@ std::string held_text(const InitPlace& place) {
       names);
 }
 
-/// Of instruments whose parameters have their names.
-/// @param tip  one of the tips
-std::string variants_of_several(const InitFacts& facts, const InitRobot& tip, const InitPlace& place) {
-  if (!facts.camera)
-    return "  geometric:\n"
-           "    parameters: auto                   # an irreducible set of the robot's geometric parameters\n"
-           "    nuisance: [\"base.*\", \"target@*\"]   # estimated too, but of no interest: tracker and reflectors\n";
-  // One camera that all look into has the place of the base; cameras on hands have places of their own.
-  const std::string base = on_moving_base(facts, tip) ? "base@" + name_of(tip.links.base) : "base";
-  const std::string places =
-      facts.on_hand ? "\"camera@*.?\", \"camera@*.r?\"" : fmt::format("\"{0}.?\", \"{0}.r?\"", base);
-  const char* lens =
-      facts.on_hand ? "\"base.*\", \"camera@*.f?\", \"camera@*.c?\", \"camera@*.k?\", \"camera@*.p?\"" : "\"camera@*\"";
-  return fmt::format(
-      "  hand_eye:                            # where cameras are; the arms are taken as they are\n"
-      "    parameters: [{0}]\n    nuisance: [\"board@*\"]\n{2}"
-      "  hand_eye_and_arm:                    # the arms' geometric parameters too: posewright plan --variant\n"
-      "    parameters: auto\n    nuisance: [\"board@*\", {0}]\n    fixed: [{1}]\n",
-      places, lens, held_text(place));
+/// Patterns of parameters; those of several instruments have their names.
+struct PlannedNames {
+  std::string camera;                 ///< of where the camera is: without ".x"
+  std::string lens, boards, targets;  ///< fixed beside the arm, nuisance
+};
+
+PlannedNames names_of(const InitFacts& facts, const std::vector<InitRobot>& tips) {
+  const bool several = tips.size() > 1;
+  PlannedNames names{several ? "camera@*" : "camera", "", several ? "board@*" : "board.*",
+                     several ? "target@*" : "target.*"};
+  names.lens = fmt::format("\"base.*\", \"{0}.fx\", \"{0}.fy\", \"{0}.c?\", \"{0}.k?\", \"{0}.p?\"", names.camera);
+  if (!several || facts.on_hand) return names;
+  // One camera that all look into has the place of the base.
+  names.lens = "\"camera@*\"";
+  names.camera = on_moving_base(facts, tips.front()) ? "base@" + name_of(tips.front().links.base) : "base";
+  return names;
 }
 
-std::string variants_text(const InitFacts& facts, const std::vector<InitRobot>& tips, const InitPlace& place) {
+std::string variants_text(const InitFacts& facts, const PlannedNames& names, const InitPlace& place) {
   std::string text = "\n# 4. Plan: what is to be identified, and by how many poses.\nvariants:\n";
-  if (tips.size() > 1) return text + variants_of_several(facts, tips.front(), place);
   if (!facts.camera)
     return text +
-           "  geometric:\n"
-           "    parameters: auto                   # an irreducible set of the arm's geometric parameters\n"
-           "    nuisance: [\"base.*\", \"target.*\"]   # estimated too, but of no interest: tracker and reflectors\n";
-  return text +
-         "  hand_eye:                            # where the camera is; the arm is taken as it is\n"
-         "    parameters: [\"camera.?\", \"camera.r?\"]\n"
-         "    nuisance: [\"board.*\"]\n" +
-         held_text(place) +
-         "  hand_eye_and_arm:                    # the arm's geometric parameters too: posewright plan --variant\n"
-         "    parameters: auto\n"
-         "    nuisance: [\"board.*\", \"camera.?\", \"camera.r?\"]\n"
-         "    fixed: [\"base.*\", \"camera.fx\", \"camera.fy\", \"camera.c?\", \"camera.k?\", \"camera.p?\"]\n";
+           fmt::format(
+               "  geometric:\n"
+               "    parameters: auto                   # an irreducible set of the arm's geometric parameters\n"
+               "    nuisance: [\"base.*\", \"{}\"]   # estimated too, but of no interest: tracker and reflectors\n",
+               names.targets);
+  return text + fmt::format(
+                    "  hand_eye:                            # where the camera is; the arm is taken as it is\n"
+                    "    parameters: [\"{0}.?\", \"{0}.r?\"]\n"
+                    "    nuisance: [\"{1}\"]\n"
+                    "{2}"
+                    "  hand_eye_and_arm:                    # the arm's geometric parameters too: posewright plan "
+                    "--variant\n"
+                    "    parameters: auto\n"
+                    "    nuisance: [\"{1}\", \"{0}.?\", \"{0}.r?\"]\n"
+                    "    fixed: [{3}]\n",
+                    names.camera, names.boards, held_text(place), names.lens);
 }
 
-std::string design_text(const InitFacts& facts) {
+std::string design_text(const InitFacts& facts, const PlannedNames& names) {
   const bool hand_eye = facts.camera && !facts.arm;
   std::string text = "\ndesign:\n";
   if (facts.camera) text += fmt::format("  variant: {}\n", hand_eye ? "hand_eye" : "hand_eye_and_arm");
   if (facts.accuracy && !facts.poses) text += "  poses: auto                          # as many as `require` takes\n";
   else text += fmt::format("  poses: {}\n", facts.poses.value_or(default_poses(facts)));
   if (facts.accuracy && hand_eye)
-    text += fmt::format("  require: {{sigma: {{\"camera.?\": \"{:g} mm\"}}}}   # 1 sigma of where the camera is\n",
-                        *facts.accuracy * 1e3);
+    text += fmt::format("  require: {{sigma: {{\"{}.?\": \"{:g} mm\"}}}}   # 1 sigma of where the camera is\n",
+                        names.camera, *facts.accuracy * 1e3);
   else if (facts.accuracy)
     text += fmt::format("  require: {{accuracy: \"{:g} mm\"}}        # after calibration, at the test poses\n",
                         *facts.accuracy * 1e3);
@@ -420,13 +419,14 @@ int default_poses(const InitFacts& facts) { return facts.camera && !facts.arm ? 
 
 std::string init_text(const InitFacts& facts, const std::vector<InitRobot>& tips, const InitPlace& place,
                       const std::filesystem::path& expanded) {
+  const PlannedNames names = names_of(facts, tips);
   return schema_line(facts.schema) +
          fmt::format(
              "# Made by posewright init for {}: yours to change. Lengths in m and angles in rad where no unit is "
              "written.\nposewright: 1\n\n",
              facts.robot.filename().string()) +
          robot_text(facts, tips, expanded) + instruments_text(facts, tips, place) + cell_text(facts, tips, place) +
-         variants_text(facts, tips, place) + design_text(facts);
+         variants_text(facts, names, place) + design_text(facts, names);
 }
 
 }  // namespace posewright

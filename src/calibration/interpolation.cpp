@@ -30,7 +30,7 @@ AtEstimate at_estimate(const IdentificationModel& model, const VariantColumns& c
   const EffectFeatures features(effect, places, features_of_a_fit);
   Eigen::MatrixXd along = rows.J.rightCols(Eigen::Index(effect->columns().size()));
   effect->take_sizes(along);
-  const Eigen::MatrixXd F = effect_columns(features, places, along, rows.first);
+  const Eigen::MatrixXd F = EffectRows(features.at(places), std::move(along), rows.first).dense();
   rows.J.conservativeResize(Eigen::NoChange, Eigen::Index(columns.selected.size()));
 
   AtEstimate at{std::move(rows), features, {}, {}, {}, {}, {}};
@@ -117,7 +117,7 @@ Interpolation interpolate(const IdentificationModel& model, const VariantColumns
     Eigen::MatrixXd along = there.G;
     effect->take_sizes(along);
     Eigen::MatrixXd F = Eigen::MatrixXd::Zero(along.rows(), at.features.columns());
-    at.features.add_columns(at.features.at(effect->places(others[k].q)), along, F.middleRows(0, F.rows()));
+    add_feature_columns(at.features.at(effect->places(others[k].q)), along, F.middleRows(0, F.rows()));
     result.others[k] -= F * at.u;
   }
   return result;

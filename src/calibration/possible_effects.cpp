@@ -107,7 +107,7 @@ class Residuals {
     effect->take_sizes(rows.J);
     const Eigen::MatrixXd places = places_of(*effect, poses_);
     const EffectFeatures features(effect, places, int(places.cols()));
-    return {fitted_->left(effect_columns(features, places, rows.J, rows.first)), r_, freedom_};
+    return {fitted_->left(EffectRows(features.at(places), std::move(rows.J), rows.first).dense()), r_, freedom_};
   }
 
   Evidence without_effect() const { return {Eigen::MatrixXd::Zero(r_.size(), 1), r_, freedom_}; }

@@ -136,7 +136,8 @@ SmoothEffect smooth_effect(const IdentificationModel& model, const VariantColumn
       const auto of_instruments =
           std::make_shared<UnmodelledEffect>(model, UnmodelledSize{1.0, 0.0, l, own_sizes, false});
       const Eigen::MatrixXd places = places_of(*of_instruments, list);
-      beside.emplace(effect_columns({of_instruments, places, int(places.cols())}, places, A, linear.first));
+      beside.emplace(
+          EffectRows(EffectFeatures(of_instruments, places, int(places.cols())).at(places), A, linear.first));
       beside->apply(J);
       beside->apply(r);
     }
@@ -146,7 +147,7 @@ SmoothEffect smooth_effect(const IdentificationModel& model, const VariantColumn
     const auto effect = std::make_shared<UnmodelledEffect>(model, UnmodelledSize{1.0, 0.0, l});
     const Eigen::MatrixXd places = places_of(*effect, list);
     const EffectFeatures features(effect, places, int(places.cols()));
-    Eigen::MatrixXd F = effect_columns(features, places, A, linear.first);
+    Eigen::MatrixXd F = EffectRows(features.at(places), A, linear.first).dense();
     if (beside) beside->apply(F);
     F = fitted.left(F);
     // In units in which an effect of size one is as large as the noise.

@@ -94,19 +94,6 @@ Eigen::MatrixXd places_of(const UnmodelledEffect& effect, const std::vector<Meas
   return places;
 }
 
-Eigen::MatrixXd effect_columns(const EffectFeatures& features, const Eigen::MatrixXd& places,
-                               const Eigen::MatrixXd& along, const std::vector<int>& first) {
-  const int tips = features.effect().tips();
-  const Eigen::MatrixXd phi = features.at(places);
-  Eigen::MatrixXd F = Eigen::MatrixXd::Zero(along.rows(), features.columns());
-  for (std::size_t k = 0; k + 1 < first.size(); ++k) {
-    const int count = first[k + 1] - first[k];
-    features.add_columns(phi.middleCols(Eigen::Index(k) * tips, tips), along.middleRows(first[k], count),
-                         F.middleRows(first[k], count));
-  }
-  return F;
-}
-
 ResidualProjector::ResidualProjector(const Eigen::MatrixXd& fitted) {
   const Eigen::VectorXd length = fitted.colwise().norm().cwiseMax(1e-300);
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(fitted * length.cwiseInverse().asDiagonal());
@@ -226,7 +213,7 @@ void StackedReadings::find_features() {
     first.push_back(first.back() + int(rows_.rows()));
   }
   effect_->take_sizes(along);
-  independent_ = IndependentRows(effect_columns(*features_, places_of(*effect_, poses_), along, first));
+  independent_ = IndependentRows(EffectRows(features_->at(places_of(*effect_, poses_)), std::move(along), first));
 }
 
 /// The mean over all readings of the unit; what they are worth to each other within it is one.

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "posewright/calibration/fit.hpp"
+#include "posewright/model/independent_rows.hpp"
 #include "restricted_likelihood.hpp"
 
 namespace posewright {
@@ -50,13 +51,6 @@ inline constexpr int features_of_a_fit = 200;
 
 /// Places of the tips of these poses, UnmodelledEffect::places() one beside the other.
 Eigen::MatrixXd places_of(const UnmodelledEffect& effect, const std::vector<MeasuredPose>& poses);
-
-/// Columns of the effect's features, one pose's rows below the other's.
-/// @param along  whitened derivatives along the effect's columns(), their sizes taken
-/// @param first  row of each pose; one more at the end
-/// @param places  places_of() these poses
-Eigen::MatrixXd effect_columns(const EffectFeatures& features, const Eigen::MatrixXd& places,
-                               const Eigen::MatrixXd& along, const std::vector<int>& first);
 
 /// Part of columns outside the fitted ones, all whitened: X − Q Qᵀ X.
 class ResidualProjector {

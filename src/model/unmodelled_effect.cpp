@@ -86,16 +86,19 @@ EffectFeatures::EffectFeatures(std::shared_ptr<const UnmodelledEffect> effect, c
   }
   const auto count = Eigen::Index(chosen.size());
   pivots_ = places(Eigen::all, chosen);
-  // φ of the pivots is L of their correlations: φ = L⁻¹ k, turned so that the first features hold most.
+  // φ of the pivots is L of their correlations: φ = L⁻¹ k.
   const Eigen::MatrixXd phi = rows.topRows(count);
   const Eigen::MatrixXd L = phi(Eigen::all, chosen).transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(Eigen::MatrixXd(phi * phi.transpose()));
-  weights_ = L.transpose().triangularView<Eigen::Upper>().solve(eigen.eigenvectors().rowwise().reverse()).transpose();
+  weights_ = L.triangularView<Eigen::Lower>().solve(Eigen::MatrixXd::Identity(count, count));
+  squares_ = phi * phi.transpose();
 }
 
 EffectFeatures EffectFeatures::first(int count) const {
+  const auto kept = std::min<Eigen::Index>(count, weights_.rows());
   EffectFeatures fewer = *this;
-  fewer.weights_ = weights_.topRows(std::min<Eigen::Index>(count, weights_.rows()));
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(squares_);
+  fewer.weights_ = (weights_.transpose() * eigen.eigenvectors().rightCols(kept).rowwise().reverse()).transpose();
+  fewer.squares_ = eigen.eigenvalues().tail(kept).reverse().asDiagonal();
   return fewer;
 }
 
@@ -116,7 +119,7 @@ void EffectFeatures::expand(std::span<const double> q, Eigen::Ref<const BlockArr
   effect_->take_sizes(Y);
   out.rightCols(own) = block.leftCols(own);
   out.leftCols(columns()).setZero();
-  add_columns(phi, Y, out.leftCols(columns()));
+  add_feature_columns(phi, Y, out.leftCols(columns()));
   Eigen::MatrixXd rest = -phi.transpose() * phi;
   for (Eigen::Index a = 0; a < tips; ++a)
     for (Eigen::Index b = 0; b < tips; ++b) rest(a, b) += effect_->correlation(places.col(a), places.col(b));
@@ -134,38 +137,6 @@ Eigen::MatrixXd EffectFeatures::columns_at(const Eigen::VectorXd& phi, const Eig
   Eigen::MatrixXd result(twists.rows(), columns());
   for (Eigen::Index j = 0; j < phi.size(); ++j)
     for (int k = 0; k < each; ++k) result.col(j * each + k) = phi[j] * effect_->size_of(k) * twists.col(k);
-  return result;
-}
-
-IndependentRows::IndependentRows(Eigen::MatrixXd F) : F_(std::move(F)) {
-  Eigen::MatrixXd inner = Eigen::MatrixXd::Identity(F_.cols(), F_.cols());
-  inner.selfadjointView<Eigen::Lower>().rankUpdate(F_.transpose());
-  L_ = inner.llt().matrixL();
-  L_and_one_ = L_;
-  L_and_one_.diagonal().array() += 1.0;
-}
-
-void IndependentRows::apply(Eigen::Ref<Eigen::MatrixXd> rows) const {
-  Eigen::MatrixXd taken = F_.transpose() * rows;
-  L_.triangularView<Eigen::Lower>().solveInPlace(taken);
-  L_and_one_.transpose().triangularView<Eigen::Upper>().solveInPlace(taken);
-  rows.noalias() -= F_ * taken;
-}
-
-void IndependentRows::apply_transposed(Eigen::Ref<Eigen::MatrixXd> rows) const {
-  Eigen::MatrixXd taken = F_.transpose() * rows;
-  L_and_one_.triangularView<Eigen::Lower>().solveInPlace(taken);
-  L_.transpose().triangularView<Eigen::Upper>().solveInPlace(taken);
-  rows.noalias() -= F_ * taken;
-}
-
-BlockArray without_features(const BlockArray& blocks, int features, Eigen::MatrixXd* also) {
-  const IndependentRows independent{Eigen::MatrixXd(blocks.all().leftCols(features))};
-  Eigen::MatrixXd rows = blocks.all().rightCols(blocks.columns() - features);
-  independent.apply(rows);
-  if (also != nullptr) independent.apply(*also);
-  BlockArray result(blocks.count(), blocks.rows(), int(rows.cols()));
-  result.all() = rows;
   return result;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "posewright/model/independent_rows.hpp"
 #include "posewright/study/unmodelled.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/distributions.hpp"
@@ -34,10 +35,10 @@ RigidTwists rigid_twists(const Eigen::Isometry3d& X) {
 /// the tips.
 struct Readings {
   Configurations poses;
-  std::vector<Eigen::Index> first{0};  ///< row of each pose, and behind the last
+  std::vector<int> first{0};  ///< row of each pose, and behind the last
   Eigen::MatrixXd J, left_out, along;
 
-  Eigen::Index rows_of(std::size_t pose) const { return first[pose + 1] - first[pose]; }
+  int rows_of(std::size_t pose) const { return first[pose + 1] - first[pose]; }
 };
 
 Readings readings_of(const Variant& variant, const std::vector<MeasuredPose>& measured, const Configurations& more,
@@ -60,7 +61,7 @@ Readings readings_of(const Variant& variant, const std::vector<MeasuredPose>& me
   for (const MeasuredPose& pose : measured) append(readings.poses, pose.q);
   for (std::size_t i = 0; i < more.count(); ++i) append(readings.poses, more[i]);
   for (std::size_t i = 0; i < readings.poses.count(); ++i)
-    readings.first.push_back(readings.first.back() + (i < measured.size() ? read.rows() : all_read.rows()));
+    readings.first.push_back(readings.first.back() + int(i < measured.size() ? read.rows() : all_read.rows()));
   Eigen::MatrixXd all(readings.first.back(), Eigen::Index(columns.selected.size()));
   all.topRows(read.all().rows()) = read.all();
   all.bottomRows(all_read.all().rows()) = all_read.all();
@@ -148,32 +149,26 @@ std::shared_ptr<const UnmodelledEffect> effect_of(const Variant& variant, Expect
   return std::make_shared<UnmodelledEffect>(*variant.model, size);
 }
 
-/// Features that hold the effect between poses and places, and its columns in the readings.
-struct EffectColumns {
+/// Features that hold the effect between poses and places, and its rows in the readings.
+struct EffectBetween {
   EffectFeatures features;
-  Eigen::MatrixXd F;
+  EffectRows rows;
 };
 
-EffectColumns effect_columns(const std::shared_ptr<const UnmodelledEffect>& effect,
+EffectBetween effect_between(const std::shared_ptr<const UnmodelledEffect>& effect,
                              const std::vector<TestPlace>& places, const Readings& readings) {
   const Eigen::MatrixXd at = effect_places(*effect, readings.poses);
   Eigen::MatrixXd all(effect->place(places.front().q).size(), at.cols() + Eigen::Index(places.size()));
   for (std::size_t t = 0; t < places.size(); ++t) all.col(Eigen::Index(t)) = effect->place(places[t].q);
   if (at.size() > 0) all.rightCols(at.cols()) = at;
-  EffectColumns result{EffectFeatures(effect, all, whole_features + int(places.size())), {}};
+  const EffectFeatures features(effect, all, whole_features + int(places.size()));
   Eigen::MatrixXd along(readings.along.rows(), Eigen::Index(effect->tips()) * effect->twists());
   for (int tip = 0; tip < effect->tips(); ++tip)
     along.middleCols(tip * effect->twists(), effect->twists()) =
         readings.along.middleCols(tip * tip_twists, effect->twists());
   effect->take_sizes(along);
-  result.F = Eigen::MatrixXd::Zero(along.rows(), result.features.columns());
-  if (at.size() == 0) return result;
-  const Eigen::MatrixXd phi = result.features.at(at);
-  for (std::size_t i = 0; i < readings.poses.count(); ++i)
-    result.features.add_columns(phi.middleCols(Eigen::Index(i) * effect->tips(), effect->tips()),
-                                along.middleRows(readings.first[i], readings.rows_of(i)),
-                                result.F.middleRows(readings.first[i], readings.rows_of(i)));
-  return result;
+  return {features, EffectRows(at.size() > 0 ? features.at(at) : Eigen::MatrixXd(features.count(), 0), std::move(along),
+                               readings.first)};
 }
 
 /// Mean squares at the places: of the noise, and of an effect of unit size; m².
@@ -233,10 +228,11 @@ class ErrorsToExpect::Places {
     const std::array<bool, rigid_motions> out = taken_out(variant, *seen, readings_);
     said_.base_out = std::any_of(out.begin(), out.begin() + tip_twists, [](bool o) { return o; });
     said_.tool_out = std::any_of(out.begin() + tip_twists, out.end(), [](bool o) { return o; });
-    EffectColumns columns = effect_columns(effect, places, readings_);
-    F_ = std::move(columns.F);
+    const EffectBetween between = effect_between(effect, places, readings_);
+    rows_ = between.rows;
+    F_ = between.rows.dense();
     const ErrorsAtPlaces errors(points, places);
-    Eigen::MatrixXd A = errors.by_parameters(), B = errors.by_effect(columns.features);
+    Eigen::MatrixXd A = errors.by_parameters(), B = errors.by_effect(between.features);
     moves_ = !A.isZero(0);
     const Eigen::MatrixXd Q = errors.by_frames(*seen, out);
     A -= Q * (Q.transpose() * A);
@@ -272,7 +268,7 @@ class ErrorsToExpect::Places {
     F = F_;
     if (!counted_) return;
     if (!of_beginnings) {
-      const IndependentRows independent(F_);
+      const IndependentRows independent(*rows_);
       independent.apply(J);
       independent.apply(F);
       return;
@@ -307,6 +303,7 @@ class ErrorsToExpect::Places {
   bool counted_ = false, moves_ = false;
   double unit_ = 1.0;
   std::vector<CountedSize> sizes_;
+  std::optional<EffectRows> rows_;  // of F_
   Eigen::MatrixXd F_;
   Eigen::MatrixXd AA_, AB_;  // AᵀA, AᵀB
   double BB_ = 0.0;

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <set>
 
+#include "posewright/model/independent_rows.hpp"
 #include "posewright/study/columns.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "posewright/model/independent_rows.hpp"
 #include "posewright/model/instrument_choice.hpp"
 #include "posewright/study/accuracy_points.hpp"
 #include "posewright/study/unmodelled.hpp"

@@ -73,16 +73,30 @@ class UnmodelledEffect {
   std::vector<int> columns_;
 };
 
+/// Columns of the u of features at one configuration: out += Σ φ_j(tip) ∂y/∂δ_tip.
+/// @param phi    EffectFeatures::at() of its tips, features × tips
+/// @param along  readings' derivatives along the twists, their sizes taken, rows × (tips × twists)
+/// @param out    rows × (features × twists)
+template <class Along, class Out>
+void add_feature_columns(const Eigen::Ref<const Eigen::MatrixXd>& phi, const Eigen::MatrixBase<Along>& along,
+                         Eigen::MatrixBase<Out>&& out) {
+  const Eigen::Index each = along.cols() / phi.cols();
+  for (Eigen::Index j = 0; j < phi.rows(); ++j)
+    for (Eigen::Index tip = 0; tip < phi.cols(); ++tip)
+      out.middleCols(j * each, each) += phi(j, tip) * along.middleCols(tip * each, each);
+}
+
 /// The effect as columns of a linear model: δ(q) = Σ_j φ_j(q) u_j + what is left, u_j ~ N(0, diag(τ², τ_r²)) and the
 /// rest independent from pose to pose, so that the variance at every pose is right. φ by pivoted Cholesky (Nyström) of
-/// the correlations between given places, turned to the directions in which these differ most.
+/// the correlations between given places.
 class EffectFeatures {
  public:
   /// Whole between the given places, but for 1e-10 of the variance, if `most` allows.
   /// @param places  f of given poses, one a column
   /// @param most    places that φ is made of
   EffectFeatures(std::shared_ptr<const UnmodelledEffect> effect, const Eigen::MatrixXd& places, int most);
-  /// The `count` that hold most of the variance at those places.
+  /// The `count` that hold most of the variance at the given places: φ turned to the directions in which it differs
+  /// most.
   EffectFeatures first(int count) const;
 
   const UnmodelledEffect& effect() const { return *effect_; }
@@ -91,19 +105,6 @@ class EffectFeatures {
   int columns() const { return count() * effect_->twists(); }
   /// φ of every tip at these places, count() × tips.
   Eigen::MatrixXd at(const Eigen::MatrixXd& places) const;
-
-  /// Columns of the u at one configuration: out += Σ φ_j(tip) ∂y/∂δ_tip.
-  /// @param phi    count() × tips
-  /// @param along  readings' derivatives along the twists, their sizes taken, rows × (tips × twists)
-  /// @param out    rows × columns()
-  template <class Along, class Out>
-  void add_columns(const Eigen::Ref<const Eigen::MatrixXd>& phi, const Eigen::MatrixBase<Along>& along,
-                   Eigen::MatrixBase<Out>&& out) const {
-    const int each = effect_->twists();
-    for (Eigen::Index j = 0; j < phi.rows(); ++j)
-      for (Eigen::Index tip = 0; tip < phi.cols(); ++tip)
-        out.middleCols(j * each, each) += phi(j, tip) * along.middleCols(tip * each, each);
-  }
 
   /// A whitened block J and the same of the twists' derivatives become the block of features and J, in this order, with
   /// unit variance of every u; what the features leave at q counts as noise of this pose.
@@ -120,29 +121,7 @@ class EffectFeatures {
   std::shared_ptr<const UnmodelledEffect> effect_;
   Eigen::MatrixXd pivots_;   // their places
   Eigen::MatrixXd weights_;  // φ = weights · correlations with the pivots
+  Eigen::MatrixXd squares_;  // φ φᵀ of the given places
 };
-
-/// Whitened rows of correlated readings as those of independent ones, X' = W X with WᵀW = (I + F Fᵀ)⁻¹:
-/// W = I − F (I + L)⁻ᵀ L⁻¹ Fᵀ, L Lᵀ = I + FᵀF by Cholesky.
-class IndependentRows {
- public:
-  IndependentRows() = default;
-  explicit IndependentRows(Eigen::MatrixXd F);
-  /// No correlation.
-  bool empty() const { return F_.size() == 0; }
-  /// W X in the place of X.
-  void apply(Eigen::Ref<Eigen::MatrixXd> rows) const;
-  /// Wᵀ X in the place of X.
-  void apply_transposed(Eigen::Ref<Eigen::MatrixXd> rows) const;
-
- private:
-  Eigen::MatrixXd F_, L_, L_and_one_;
-};
-
-/// Blocks of features and parameters as blocks of the parameters alone whose rows are whitened by the covariance of all
-/// readings, J' = W J: what evaluates a list needs to know of no effect.
-/// @param features  leading columns that are features
-/// @param also  rows × any, whitened in place likewise if not null
-BlockArray without_features(const BlockArray& blocks, int features, Eigen::MatrixXd* also = nullptr);
 
 }  // namespace posewright

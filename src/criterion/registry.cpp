@@ -148,4 +148,11 @@ std::string criterion_names() {
   return names;
 }
 
+std::string determinant_names() {
+  std::string names;
+  for (const CriterionEntry& entry : criterion_registry())
+    if (entry.determinant) names += (names.empty() ? "" : " or ") + entry.name;
+  return names;
+}
+
 }  // namespace posewright

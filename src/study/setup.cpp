@@ -58,9 +58,9 @@ void draw_robots(Setup& setup, const VariantSpec& first) {
   };
   if (find_criterion(setup.criterion)->several_variants)
     refuse("is for one variant, not for the several of criterion '" + setup.criterion + "'",
-           "criterion: o1 or ds, and variant: one of them");
-  if (setup.criterion != "o1" && setup.criterion != "ds")
-    refuse("is for the determinant, not for criterion '" + setup.criterion + "'", "criterion: o1 or ds");
+           "criterion: " + determinant_names() + ", and variant: one of them");
+  if (!find_criterion(setup.criterion)->determinant)
+    refuse("is for the determinant, not for criterion '" + setup.criterion + "'", "criterion: " + determinant_names());
   if (setup.reserve) refuse("cannot be combined with reserve", "leave one of them out");
   if (first.unmodelled) refuse("does not support a variant with an unmodelled effect", "a variant without unmodelled");
   setup.robust = robust;

@@ -154,10 +154,11 @@ Plan begun_plan(const SelectOptions& options, const std::string& sha256) {
 
 /// Refuses options without support for spread candidates, before anything is read.
 void require_spread(const SelectOptions& options) {
-  const auto refuse = [](const std::string& what, const char* instead) {
+  const auto refuse = [](const std::string& what, const std::string& instead) {
     throw InputError({}, what + " with --spread", instead);
   };
-  if (options.criterion != "o1" && options.criterion != "ds") refuse("--criterion " + options.criterion, "o1 or ds");
+  if (const CriterionEntry* entry = find_criterion(options.criterion); entry == nullptr || !entry->determinant)
+    refuse("--criterion " + options.criterion, determinant_names());
   if (options.method != "exchange" && options.method != "greedy")
     refuse("--method " + options.method, "exchange or greedy");
   if (options.nuisance > 0) refuse("--nuisance", "all columns count; without --spread they may be eliminated");

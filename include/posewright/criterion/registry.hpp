@@ -43,5 +43,7 @@ const CriterionEntry* find_criterion(const std::string& name);
 std::unique_ptr<Criterion> make_criterion(const std::string& name, const CriterionData& data);
 /// "o1, …": for messages with the allowed values.
 std::string criterion_names();
+/// "o1 or ds": those whose Φ is the determinant.
+std::string determinant_names();
 
 }  // namespace posewright

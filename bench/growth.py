@@ -88,6 +88,7 @@ def rows(program, folder):
     return {
         "candidates, select of n × 20, 40 poses": ((10_000, 100_000, 1_000_000), lambda n: select(n, 20, 40)),
         "parameters, select of 5,000 × m, 2 m poses": ((30, 100, 300), lambda m: select(5000, m, 2 * m, "--restarts", "1")),
+        "parameters alone, select of 5,000 × m, 600 poses": ((30, 100, 300), lambda m: select(5000, m, 600, "--restarts", "1")),
         "poses, select of 5,000 × 10": ((100, 300, 1000), lambda poses: select(5000, 10, poses)),
         "poses, report of the KR 270": ((30, 100, 300, 1000), lambda poses: [
             "report", pairs.planned(program, folder, kr270, poses) + ".json", "-o", "out.html", "--force", "--quiet"]),

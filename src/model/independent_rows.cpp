@@ -14,6 +14,14 @@ EffectRows::EffectRows(Eigen::MatrixXd phi, Eigen::MatrixXd along, std::vector<i
       tips_(first_.size() > 1 ? phi_.cols() / Eigen::Index(first_.size() - 1) : 1),
       twists_(along_.cols() / tips_) {}
 
+EffectRows EffectRows::beginning(std::size_t poses) const {
+  EffectRows part = *this;
+  part.phi_ = phi_.leftCols(Eigen::Index(poses) * tips_);
+  part.along_ = along_.topRows(first_[poses]);
+  part.first_.resize(poses + 1);
+  return part;
+}
+
 Eigen::MatrixXd EffectRows::dense() const {
   Eigen::MatrixXd F = Eigen::MatrixXd::Zero(rows(), columns());
   for (std::size_t k = 0; k + 1 < first_.size(); ++k)

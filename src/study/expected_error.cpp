@@ -187,14 +187,12 @@ struct CountedSize {
 };
 
 /// Least, found and largest size by the residuals, eq. (69).
-/// @param left  columns of the effect of `unit` metres beside what the parameters take up
+/// @param left  products of the columns that an effect of `unit` metres has beside what the parameters take up
 std::vector<CountedSize> measured_sizes(const FittedResiduals& residuals, const Eigen::MatrixXd& left, double unit) {
-  const double all = left.squaredNorm(), free = residuals.freedom;
+  const double all = left.trace(), free = residuals.freedom;
   const double of_unit = std::max(0.0, residuals.squares - free) / all;
-  const double both =
-      (left.rows() < left.cols() ? Eigen::MatrixXd(left * left.transpose()) : Eigen::MatrixXd(left.transpose() * left))
-          .squaredNorm();
-  const double mean = free + of_unit * all, variance = free + 2 * of_unit * all + of_unit * of_unit * both;
+  const double mean = free + of_unit * all,
+               variance = free + 2 * of_unit * all + of_unit * of_unit * left.squaredNorm();
   const double directions = std::min(mean * mean / variance, most_directions);
   const double half = (1 - range_confidence) / 2;
   std::vector<CountedSize> sizes;
@@ -230,7 +228,6 @@ class ErrorsToExpect::Places {
     said_.tool_out = std::any_of(out.begin() + tip_twists, out.end(), [](bool o) { return o; });
     const EffectBetween between = effect_between(effect, places, readings_);
     rows_ = between.rows;
-    F_ = between.rows.dense();
     const ErrorsAtPlaces errors(points, places);
     Eigen::MatrixXd A = errors.by_parameters(), B = errors.by_effect(between.features);
     moves_ = !A.isZero(0);
@@ -250,8 +247,12 @@ class ErrorsToExpect::Places {
 
   void take_size_of(const FittedResiduals& residuals, const Eigen::MatrixXd& covariance) {
     if (counted_ || covariance.size() == 0 || !(residuals.freedom >= most_directions)) return;
-    const auto J = readings_.J.topRows(readings_.first[measured_]), F = F_.topRows(J.rows());
-    std::vector<CountedSize> found = measured_sizes(residuals, F - J * (covariance * (J.transpose() * F)), unit_);
+    const EffectRows rows = rows_->beginning(measured_);
+    const auto J = readings_.J.topRows(rows.rows());
+    const Eigen::MatrixXd FJ = rows.transposed_times(J), taken = FJ * covariance;
+    const Eigen::MatrixXd left = rows.products() - taken * FJ.transpose() - FJ * taken.transpose() +
+                                 taken * (J.transpose() * J) * taken.transpose();
+    std::vector<CountedSize> found = measured_sizes(residuals, left, unit_);
     // A size beyond those of robots that so few residuals give, while all of these remain possible, is chance.
     const auto square = [&](double times) { return std::pow(times * said_.noise, 2); };
     if (found[0].effect <= square(ExpectedError::robots.front()) &&
@@ -261,20 +262,23 @@ class ErrorsToExpect::Places {
     said_.size = ExpectedError::Size::measured;
   }
 
-  /// Derivatives and effect of readings that an effect which the fit counts makes dependent, as of independent ones.
-  /// @param of_beginnings  so that the first rows are those of the first poses alone
-  void whiten(Eigen::MatrixXd& J, Eigen::MatrixXd& F, bool of_beginnings) const {
+  /// Jᵀ F of all poses, as of independent readings: of those that an effect which the fit counts makes dependent it is
+  /// Jᵀ (I + F Fᵀ)⁻¹ F = Jᵀ F (I + Fᵀ F)⁻¹.
+  Eigen::MatrixXd products_of_all() const {
+    Eigen::MatrixXd FJ = rows_->transposed_times(readings_.J);
+    if (!counted_) return FJ.transpose();
+    Eigen::MatrixXd inner = rows_->products();
+    inner.diagonal().array() += 1.0;
+    return inner.llt().solve(FJ).transpose();
+  }
+
+  /// J and F as of independent readings, so that the first rows are those of the first poses alone.
+  void whiten_in_order(Eigen::MatrixXd& J, Eigen::MatrixXd& F) const {
     J = readings_.J;
-    F = F_;
+    F = rows_->dense();
     if (!counted_) return;
-    if (!of_beginnings) {
-      const IndependentRows independent(*rows_);
-      independent.apply(J);
-      independent.apply(F);
-      return;
-    }
     Eigen::MatrixXd covariance = Eigen::MatrixXd::Identity(F.rows(), F.rows());
-    covariance.selfadjointView<Eigen::Lower>().rankUpdate(F_);
+    covariance.selfadjointView<Eigen::Lower>().rankUpdate(F);
     const Eigen::LLT<Eigen::MatrixXd> root(covariance);
     root.matrixL().solveInPlace(J);
     root.matrixL().solveInPlace(F);
@@ -303,9 +307,8 @@ class ErrorsToExpect::Places {
   bool counted_ = false, moves_ = false;
   double unit_ = 1.0;
   std::vector<CountedSize> sizes_;
-  std::optional<EffectRows> rows_;  // of F_
-  Eigen::MatrixXd F_;
-  Eigen::MatrixXd AA_, AB_;  // AᵀA, AᵀB
+  std::optional<EffectRows> rows_;  // columns of the effect, F
+  Eigen::MatrixXd AA_, AB_;         // AᵀA, AᵀB
   double BB_ = 0.0;
 };
 
@@ -331,7 +334,7 @@ std::vector<std::optional<ExpectedError>> ErrorsToExpect::after_each(
   std::vector<std::optional<ExpectedError>> errors(covariances.size());
   if (places_ == nullptr) return errors;
   Eigen::MatrixXd J, F;
-  places_->whiten(J, F, true);
+  places_->whiten_in_order(J, F);
   Eigen::MatrixXd JF = Eigen::MatrixXd::Zero(J.cols(), F.cols());
   for (std::size_t n = 0; n < covariances.size(); ++n) {
     if (n > 0) {
@@ -345,9 +348,7 @@ std::vector<std::optional<ExpectedError>> ErrorsToExpect::after_each(
 
 std::optional<ExpectedError> ErrorsToExpect::after_all(const Eigen::MatrixXd& covariance) const {
   if (places_ == nullptr) return std::nullopt;
-  Eigen::MatrixXd J, F;
-  places_->whiten(J, F, false);
-  return places_->expected(covariance, J.transpose() * F);
+  return places_->expected(covariance, places_->products_of_all());
 }
 
 std::optional<ExpectedError> expected_error(const Configurations& candidates, const Variant& variant,

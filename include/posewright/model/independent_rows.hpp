@@ -20,6 +20,8 @@ class EffectRows {
   Eigen::Index rows() const { return along_.rows(); }
   /// Twists of the first feature, of the second, …
   Eigen::Index columns() const { return phi_.rows() * twists_; }
+  /// Those of the first poses.
+  EffectRows beginning(std::size_t poses) const;
   /// F itself.
   Eigen::MatrixXd dense() const;
   /// FᵀF.

@@ -11,24 +11,53 @@ namespace {
 
 constexpr int most_singular_passes = 50;
 
-/// One pass over all positions; returns the number of accepted swaps. The first pass of a start is a whole one, so that
-/// whoever stops early still gets a plan.
-int exchange_pass(DesignState& state, std::vector<int>& order, bool whole, const Monitor& monitor) {
-  std::iota(order.begin(), order.end(), 0);
-  std::vector<double> loss(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i) loss[i] = state.loss(int(i));
-  std::stable_sort(order.begin(), order.end(),
-                   [&](int a, int b) { return loss[std::size_t(a)] < loss[std::size_t(b)]; });
-  int accepted = 0;
-  for (const int position : order) {
-    if (!whole && monitor.should_stop()) break;
-    const Swap swap = state.best_swap(position, smallest_gain);
-    if (swap.enter < 0) continue;
-    state.apply(position, swap.enter);
-    ++accepted;
+/// Passes over all positions of a design. A position that had no swap is asked again only after another was swapped:
+/// before that it would be told the same.
+class Passes {
+ public:
+  explicit Passes(DesignState& state)
+      : state_(state), order_(state.members().size()), loss_(order_.size()), without_swap_(order_.size(), never) {}
+
+  /// Number of accepted swaps. The first pass of a start is a whole one, so that whoever stops early still gets a plan.
+  int next(const Monitor& monitor) {
+    std::iota(order_.begin(), order_.end(), 0);
+    for (std::size_t i = 0; i < order_.size(); ++i) loss_[i] = state_.loss(int(i));
+    std::stable_sort(order_.begin(), order_.end(),
+                     [&](int a, int b) { return loss_[std::size_t(a)] < loss_[std::size_t(b)]; });
+    const long before = swaps_;
+    for (const int position : order_) {
+      if (!first_ && monitor.should_stop()) break;
+      try_at(position);
+    }
+    first_ = false;
+    return int(swaps_ - before);
   }
-  return accepted;
-}
+
+  /// Every position is asked again: the state's numbers are others.
+  void forget() { std::fill(without_swap_.begin(), without_swap_.end(), never); }
+
+ private:
+  static constexpr long never = -1;
+
+  void try_at(int position) {
+    long& asked = without_swap_[std::size_t(position)];
+    if (asked == swaps_) return;
+    const Swap swap = state_.best_swap(position, smallest_gain);
+    if (swap.enter < 0) {
+      asked = swaps_;
+      return;
+    }
+    state_.apply(position, swap.enter);
+    ++swaps_;
+  }
+
+  DesignState& state_;
+  std::vector<int> order_;
+  std::vector<double> loss_;
+  std::vector<long> without_swap_;  // of each position: swaps before it was last asked in vain
+  long swaps_ = 0;
+  bool first_ = true;
+};
 
 }  // namespace
 
@@ -37,20 +66,23 @@ Outcome outcome_of(const DesignState& state, long exchanges) {
 }
 
 long settle(DesignState& state, const Monitor& monitor) {
-  std::vector<int> order(state.members().size());
+  Passes passes(state);
   long total = 0;
-  int singular = 0, passes = 0;
+  int singular = 0;
   while (true) {
     int accepted = 0, now = 0;
     do {
-      now = exchange_pass(state, order, passes++ == 0, monitor);
+      now = passes.next(monitor);
       accepted += now;
       // Gains of a singular set are those of M plus a ridge; if no set is regular they may go round for ever.
       if (!std::isfinite(state.value()) && ++singular >= most_singular_passes) break;
     } while (now > 0 && !monitor.should_stop());
+    const double running = state.value();
     state.refresh();
     total += accepted;
     if (accepted == 0 || singular >= most_singular_passes || monitor.should_stop()) return total;
+    if (std::abs(state.value() - running) <= smallest_gain) return total;
+    passes.forget();
   }
 }
 

@@ -20,9 +20,9 @@ struct Outcome {
 };
 Outcome outcome_of(const DesignState& state, long exchanges);
 
-/// Best-exchange passes until none gains, then a refresh and one more look: running numbers may hide a gain. One pass
-/// tries every member once, the one that Φ misses least first (Cook & Nachtsheim 1980), and takes its best partner at
-/// once (Fedorov 1972). Returns the number of accepted swaps.
+/// Best-exchange passes until no member has a swap that gains, then a refresh; where that changes Φ, another look,
+/// since running numbers may hide a gain. One pass tries members once, the one that Φ misses least first (Cook &
+/// Nachtsheim 1980), and takes its best partner at once (Fedorov 1972). Returns the number of accepted swaps.
 long settle(DesignState& state, const Monitor& monitor);
 
 /// Replaces six to thirteen members, at most half of them, by random candidates that may enter.

@@ -211,21 +211,43 @@ std::size_t next_block(const double* x, std::size_t first, std::size_t n, int ro
   return n;
 }
 
+/// Σ (x_i·y_l)² of `Rows` rows and `Vectors` vectors, each loaded once for all of the others.
+template <int Rows, int Vectors>
+inline double squared_products(const double* __restrict x, int stride, const double* __restrict y) {
+  Lanes sum[Rows][Vectors] = {};
+  for (int c = 0; c < stride; c += 4) {
+    Lanes right[Vectors];
+    for (int l = 0; l < Vectors; ++l) right[l] = *reinterpret_cast<const Lanes*>(y + l * stride + c);
+    for (int i = 0; i < Rows; ++i) {
+      const Lanes left = *reinterpret_cast<const Lanes*>(x + i * stride + c);
+      for (int l = 0; l < Vectors; ++l) sum[i][l] += left * right[l];
+    }
+  }
+  double total = 0;
+  for (int i = 0; i < Rows; ++i)
+    for (int l = 0; l < Vectors; ++l) {
+      const double product = (sum[i][l][0] + sum[i][l][1]) + (sum[i][l][2] + sum[i][l][3]);
+      total += product * product;
+    }
+  return total;
+}
+
+/// Σ_l (x_i·y_l)² of `Rows` rows.
+template <int Rows>
+inline double projected_rows(const double* x, int stride, const double* y, int vectors) {
+  double sum = 0;
+  int l = 0;
+  for (; l + 2 < vectors; l += 3) sum += squared_products<Rows, 3>(x, stride, y + l * stride);
+  for (; l < vectors; ++l) sum += squared_products<Rows, 1>(x, stride, y + l * stride);
+  return sum;
+}
+
 /// Σ_rows Σ_l (x·y_l)².
 inline double projected_squares(const double* x, int rows, int stride, const double* y, int vectors) {
   double sum = 0;
-  for (int i = 0; i < rows; ++i, x += stride) {
-    int l = 0;
-    for (; l + 1 < vectors; l += 2) {
-      double a, b;
-      dot2(x, y + l * stride, y + (l + 1) * stride, stride, &a, &b);
-      sum += a * a + b * b;
-    }
-    if (l < vectors) {
-      const double last = dot(x, y + l * stride, stride);
-      sum += last * last;
-    }
-  }
+  int i = 0;
+  for (; i + 2 < rows; i += 3) sum += projected_rows<3>(x + i * stride, stride, y, vectors);
+  for (; i < rows; ++i) sum += projected_rows<1>(x + i * stride, stride, y, vectors);
   return sum;
 }
 

@@ -1,15 +1,24 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <thread>
 
 #include "command.hpp"
-#include "next_files.hpp"
 #include "posewright/lists/read_poses.hpp"
 #include "posewright/options/tables.hpp"
 #include "posewright/results/next.hpp"
 #include "posewright/study/variant.hpp"
+#include "posewright/support/file.hpp"
 #include "posewright/support/json.hpp"
+#include "posewright/support/text_file.hpp"
+#include "posewright/tasks/next_state.hpp"
 #include "problem_source.hpp"
+#include "result_files.hpp"
 #include "session.hpp"
 #include "signals.hpp"
 #include "terminal.hpp"
@@ -17,6 +26,84 @@
 
 namespace posewright::cli {
 namespace {
+
+/// A file of readings that somebody appends to.
+class GrowingFile {
+ public:
+  explicit GrowingFile(std::filesystem::path file) : file_(std::move(file)) {}
+  /// Its whole lines now; empty if it is not there yet.
+  WholeLines read() const;
+  /// Waits until there are other whole lines than `seen`, or the file is shorter for longer than one who writes it anew
+  /// takes. A signal ends the program here: everything is written.
+  WholeLines wait_for_more(const std::string& seen) const;
+  const std::filesystem::path& file() const { return file_; }
+
+ private:
+  std::filesystem::path file_;
+};
+
+/// Files for results of `next`; empty: not requested.
+struct NextFiles {
+  std::filesystem::path state, poses, result;
+
+  /// Each file by itself, so that a state is there at any moment; it knows the pose list, so that a later call may
+  /// replace it.
+  void write(NextState& state_now, const std::string& csv, const std::string& json) const;
+};
+
+constexpr std::uintmax_t largest_data = 1'000'000'000;
+constexpr auto pause = std::chrono::milliseconds(200);
+// A program that writes its file anew leaves it short for a moment.
+constexpr int patience = 10;
+
+WholeLines GrowingFile::read() const {
+  std::error_code code;
+  if (file_.empty() || !std::filesystem::exists(file_, code)) return {};
+  return whole_lines(read_text(file_, largest_data));
+}
+
+WholeLines GrowingFile::wait_for_more(const std::string& seen) const {
+  begin_stage(SignalStage::nothing_to_lose);
+  std::uintmax_t size = 0;
+  std::filesystem::file_time_type time;
+  for (int shorter = 0;;) {
+    std::this_thread::sleep_for(pause);
+    std::error_code code;
+    const auto size_now = std::filesystem::file_size(file_, code);
+    const auto time_now = code ? time : std::filesystem::last_write_time(file_, code);
+    if (!code && size_now == size && time_now == time && shorter == 0) continue;
+    WholeLines now = read();
+    shorter = now.text.size() < seen.size() ? shorter + 1 : 0;
+    if (shorter >= patience || (shorter == 0 && now.text != seen)) return now;
+    size = code ? 0 : size_now;
+    time = time_now;
+  }
+}
+
+void NextFiles::write(NextState& state_now, const std::string& csv, const std::string& json) const {
+  begin_stage(SignalStage::finishing);
+  if (!state.empty()) {
+    if (!poses.empty()) {
+      const WrittenWith list = written_with(state, {{poses, csv}}).front();
+      // As it is and as it will be: whenever this is ended, one of both is there. What was before is no more.
+      const auto other = std::remove_if(state_now.files.begin(), state_now.files.end(),
+                                        [&](const WrittenWith& file) { return file.path != list.path; });
+      state_now.files.erase(other, state_now.files.end());
+      if (state_now.files.size() > 1) state_now.files.erase(state_now.files.begin(), state_now.files.end() - 1);
+      if (state_now.files.empty() || state_now.files.back().sha256 != list.sha256) state_now.files.push_back(list);
+    }
+    write_results({{state, next_state_text(state_now)}});
+  }
+  if (!poses.empty()) write_results({{poses, csv}});
+  if (!result.empty()) write_results({{result, json}});
+}
+
+/// measured.csv: measured.next-state.json, beside it.
+std::filesystem::path usual_state_file(const std::filesystem::path& data) {
+  if (data.empty()) return {};
+  std::filesystem::path file = data;
+  return file.replace_filename(data.stem().string() + ".next-state.json");
+}
 
 po::options_description next_command_options() { return described(next_options()).add(problem_options()); }
 

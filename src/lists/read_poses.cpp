@@ -8,16 +8,65 @@
 #include <limits>
 #include <numbers>
 
-#include "cell_in_si.hpp"
+#include "orientation_columns.hpp"
 #include "posewright/formats/pose_formats.hpp"
 #include "posewright/lists/samples.hpp"
-#include "posewright/support/error.hpp"
+#include "posewright/model/placement.hpp"
+#include "posewright/problem/units.hpp"
 #include "posewright/support/file.hpp"
 #include "posewright/support/read_number.hpp"
-#include "robot_columns.hpp"
 
 namespace posewright {
 namespace {
+
+/// Value of a cell in SI. Throws InputError.
+/// @param unit    of its column as written; empty: SI, or in the cell
+/// @param column  that names it in a message
+double cell_in_si(const std::string& cell, const std::string& unit, const std::string& column, Quantity quantity,
+                  const SourcePlace& place) {
+  try {
+    return parse_value(unit.empty() ? cell : cell + " " + unit, quantity);
+  } catch (const InputError&) {
+    throw InputError(place, fmt::format("'{}' of '{}' is not a value", cell.substr(0, 40), column),
+                     "a number; in the header, a unit: " + allowed_units({quantity}));
+  }
+}
+
+constexpr std::array<const char*, 3> angle_names = {"robot.roll", "robot.pitch", "robot.yaw"};
+
+double value_of(const PoseTable& table, const PoseRow& row, const std::string& name, const std::string& unit,
+                const SourcePlace& place) {
+  const auto at = std::size_t(std::find(table.names.begin(), table.names.end(), name) - table.names.begin());
+  const auto* text = std::get_if<std::string>(&row.cells[at]);
+  if (text == nullptr) return std::get<double>(row.cells[at]);
+  return cell_in_si(*text, table.units.empty() ? "" : table.units[at], name,
+                    unit == "rad" ? Quantity::angle : Quantity::number, place);
+}
+
+/// Adds columns robot.roll, robot.pitch, robot.yaw (GivenPoses) where a table has the orientations of a robot's poses
+/// in another form (OrientationColumns). Other tables, and those of robots with joints, stay. Throws InputError with
+/// file and line.
+void add_pose_coordinates(PoseTable& table, const std::string& file, const std::vector<Coordinate>& coordinates) {
+  const auto has = [&](const std::string& name) { return std::ranges::find(table.names, name) != table.names.end(); };
+  if (std::ranges::none_of(coordinates, [](const Coordinate& c) { return c.name == angle_names[0]; })) return;
+  const OrientationColumns orientation("robot", table.names, {file, table.header});
+  if (!orientation.found()) return;
+  if (has(angle_names[0]))
+    throw InputError({file, table.header}, "has the robot's orientation twice", "robot.roll …, or another form of it");
+  for (PoseRow& row : table.rows) {
+    const SourcePlace place{file, row.line};
+    const auto value = [&](const std::string& name, const std::string& unit) {
+      return value_of(table, row, name, unit, place);
+    };
+    const auto R = orientation.rotation(value, place);
+    if (!R) throw InputError(place, "the orientation of the robot is not whole", "a number in each column");
+    for (const double angle : rpy_of(*R)) row.cells.emplace_back(angle);
+  }
+  for (const char* name : angle_names) {
+    table.names.emplace_back(name);
+    if (!table.units.empty()) table.units.emplace_back();
+  }
+}
 
 constexpr std::uintmax_t list_size_limit = 100'000'000;
 
@@ -193,9 +242,6 @@ PoseTable recognised(const std::string& text, const std::string& file) {
   return samples_or_csv(text, file);
 }
 
-}  // namespace
-
-namespace {
 // rad or m, relative above one: what six digits of a list leave open.
 constexpr double rounding_of_lists = 1e-6;
 }  // namespace

@@ -1,11 +1,71 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "tokens.hpp"
+// How readers of programs look at text: places stay those of the file, so that values are replaced where they stand.
 
 namespace posewright::programs {
+
+inline bool is_digit(char c) { return c >= '0' && c <= '9'; }
+inline bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+inline bool is_word(char c) { return is_letter(c) || is_digit(c); }
+std::string upper(std::string_view text);
+
+struct Token {
+  enum class Kind { word, number, text, symbol, line_end, end };
+  Kind kind = Kind::end;
+  std::size_t begin = 0, end = 0;
+  int line = 0;
+  double value = 0.0;  ///< of a number, without its sign
+
+  bool is(char c, std::string_view source) const { return kind == Kind::symbol && source[begin] == c; }
+};
+
+/// Tokens of a language.
+struct LexRules {
+  std::string_view comment;        ///< begins one that ends with the line
+  std::string_view quotes = "\"";  ///< marks that texts stand between, each within its line
+  std::string_view letters = "_";  ///< that words may begin with beside A to Z
+  bool lines = false;              ///< the end of a line is a token
+};
+
+/// The tokens of a text from `begin` to `end`, the last of Kind::end.
+std::vector<Token> tokens_of(std::string_view text, const LexRules& rules, std::size_t begin = 0,
+                             std::size_t end = std::string_view::npos, int first_line = 1);
+
+/// A reading place among tokens.
+class TokenCursor {
+ public:
+  TokenCursor(std::string_view source, const std::vector<Token>& tokens, std::size_t place = 0)
+      : at(place), source_(source), tokens_(&tokens) {}
+
+  const Token& now() const { return (*tokens_)[at]; }
+  const Token& ahead(std::size_t count) const;
+  const Token& before() const { return (*tokens_)[at == 0 ? 0 : at - 1]; }
+  bool done() const { return now().kind == Token::Kind::end; }
+  void skip() { at += done() ? 0 : 1; }
+  bool sees(char c) const { return now().is(c, source_); }
+  bool take(char c) {
+    const bool found = sees(c);
+    if (found) skip();
+    return found;
+  }
+  bool is_word() const { return now().kind == Token::Kind::word; }
+  std::string_view text(const Token& token) const { return source_.substr(token.begin, token.end - token.begin); }
+  std::string_view text() const { return text(now()); }
+  std::string_view source() const { return source_; }
+  /// To the next token that is one of `symbols`, a line's end, or the end; not past it.
+  void skip_to(std::string_view symbols, bool line_ends);
+
+  std::size_t at;
+
+ private:
+  std::string_view source_;
+  const std::vector<Token>* tokens_;
+};
 
 /// An expression of a program, as far as points need it.
 struct Expression {

@@ -5,24 +5,73 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "fill_plan.hpp"
-#include "poses_at_risk.hpp"
 #include "posewright/criterion/registry.hpp"
 #include "posewright/model/instrument_choice.hpp"
+#include "posewright/model/readable.hpp"
 #include "posewright/problem/design_keys.hpp"
 #include "posewright/study/expected_error.hpp"
 #include "posewright/study/judgement.hpp"
 #include "posewright/study/pose_distance.hpp"
 #include "posewright/study/study.hpp"
+#include "posewright/study/variant.hpp"
 #include "posewright/study/written_plan.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/workspace/candidates.hpp"
 #include "robust_plan.hpp"
 
 namespace posewright {
 namespace {
+
+constexpr int robots = 200;
+// A pose that fewer lose is no worse than readings that are missed by accident.
+constexpr double worth_saying = 0.05;
+constexpr std::size_t most_named = 4;
+constexpr std::uint64_t risk_stream = 0x715c;
+
+struct Risk {
+  int id = 0;
+  double share = 0.0;
+};
+
+std::vector<Risk> risks(const Variant& variant, const Configurations& poses, int first, std::uint64_t seed) {
+  std::vector<Risk> found;
+  for (std::size_t i = 0; i < poses.count(); ++i) found.push_back({first + int(i), 0.0});
+  std::vector<double> stands(variant.model->coordinates().size());
+  for (int k = 0; k < robots; ++k) {
+    Random random(seed ^ risk_stream, std::uint64_t(k));
+    const std::vector<double> robot = drawn_correction(variant.columns, variant.model->parameters().size(), random);
+    for (std::size_t i = 0; i < poses.count(); ++i)
+      if (!readable(*variant.model, poses[i], robot, stands)) found[i].share += 1.0 / robots;
+  }
+  std::erase_if(found, [](const Risk& risk) { return risk.share < worth_saying; });
+  std::ranges::stable_sort(found, [](const Risk& a, const Risk& b) { return a.share > b.share; });
+  return found;
+}
+
+/// A sentence on poses of a plan that robots drawn from the tolerances cannot take, or that the instrument cannot
+/// read there (the board leaves the picture, the distance the instrument's range); empty: none is lost by one in
+/// twenty.
+/// @param first  what the first of the poses is called; the others follow
+std::string poses_at_risk(const Variant& variant, const Configurations& poses, int first, std::uint64_t seed) {
+  if (variant.model->unmeasurable_reason().empty()) return "";
+  const std::vector<Risk> found = risks(variant, poses, first, seed);
+  if (found.empty()) return "";
+  std::string which;
+  for (std::size_t i = 0; i < std::min(found.size(), most_named); ++i)
+    which += fmt::format("{}pose {} by {:.0f} %", i == 0 ? "" : ", ", found[i].id, 100 * found[i].share);
+  if (found.size() > most_named) which += fmt::format(", {} more by fewer", found.size() - most_named);
+  return fmt::format(
+      "Some of {} robots drawn from the tolerances cannot be read at these poses ({}): {}. `workspace: readable_for: "
+      "20` avoids such poses; smaller tolerances of base and tool help, too.",
+      robots, variant.model->unmeasurable_reason(), which);
+}
 
 // Nobody measures more in one go; a requirement that needs more is out of reach.
 constexpr int most_poses = 2000;

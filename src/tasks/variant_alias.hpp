@@ -16,4 +16,14 @@ VariantAlias variant_alias(const Setup& setup, const Variant& fitted, const Vari
 /// Parameters that `with` estimates and `without` does not, indices into the columns of `with`.
 std::vector<int> extra_columns(const Variant& with, const Variant& without);
 
+/// A variant with a plan that identifies it.
+struct JudgedVariant {
+  const Variant* variant;
+  const Evaluation* evaluation;
+  std::string plan;
+};
+
+/// @param alias  of `without`, fitted with its plan while `with` is the case
+ExtraWorth extra_worth(const JudgedVariant& with, const JudgedVariant& without, const VariantAlias& alias);
+
 }  // namespace posewright

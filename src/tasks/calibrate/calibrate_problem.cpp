@@ -8,12 +8,10 @@
 #include <utility>
 
 #include "calibrated_error.hpp"
-#include "calibration_accuracy.hpp"
 #include "calibration_columns.hpp"
 #include "calibration_data.hpp"
 #include "calibration_notes.hpp"
 #include "calibration_profiles.hpp"
-#include "calibration_refusals.hpp"
 #include "calibration_verdict.hpp"
 #include "effects_left_out.hpp"
 #include "placed_campaigns.hpp"

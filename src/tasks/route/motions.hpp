@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "posewright/study/variant.hpp"
 #include "posewright/support/monitor.hpp"
 #include "posewright/workspace/motion_space.hpp"
 
@@ -48,5 +49,10 @@ class Motions {
   std::map<Pair, Motion> found_, turned_;
   std::unique_ptr<Roadmap> roadmap_;
 };
+
+/// This pose with every joint of an arm that can turn more than once on the turn nearest to home. A configuration
+/// stays as it is if the tip or a column of the variant is another one there: a gear's error grows from turn to turn.
+/// @param home  a whole configuration
+std::vector<double> nearest_turn(const Variant& variant, std::span<const double> home, std::vector<double> q);
 
 }  // namespace posewright

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "posewright/lists/pose_list.hpp"
@@ -18,5 +19,11 @@ PoseList with_replacements(const Problem& problem, const PoseList& list, const R
 
 /// A replacement that is lost itself leaves the pose of the plan unreachable.
 void settle_replaced(Route& route);
+
+/// Efficiency of a route's poses against the whole plan; none if they do not identify all parameters.
+/// @param plan    all poses, with those that are measured already marked
+/// @param routed  the list that the route was made of: the plan, or one with replacements
+std::optional<RouteWorth> worth_of_route(const Problem& problem, const PoseList& plan, const PoseList& routed,
+                                         const Route& route, const Monitor& monitor);
 
 }  // namespace posewright

@@ -10,7 +10,6 @@
 #include "../fill_plan.hpp"
 #include "../without_roadmap.hpp"
 #include "motions.hpp"
-#include "nearest_turn.hpp"
 #include "posewright/lists/parameters_file.hpp"
 #include "posewright/lists/read_poses.hpp"
 #include "posewright/model/instrument_choice.hpp"
@@ -22,7 +21,6 @@
 #include "posewright/support/parallel.hpp"
 #include "posewright/support/text_file.hpp"
 #include "replacements.hpp"
-#include "route_loss.hpp"
 
 namespace posewright {
 namespace {

@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/math/tools/minima.hpp>
+#include <boost/math/tools/roots.hpp>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
 
 #include "posewright/model/unmodelled_effect.hpp"
@@ -23,6 +26,8 @@ constexpr int lengths_tried = 6;
 constexpr double step = 1.6;
 // τ²/s² in units of the readings: from nothing to all.
 constexpr double least_ratio = 1e-8, largest_ratio = 1e8;
+// Bits to which an end of the interval is sought.
+constexpr int relative_bits = 40;
 constexpr double half_95 = 3.841458820694124;  // χ² of one degree
 
 /// −2 ln of the restricted likelihood over γ = τ²/s², s² at its best: ν ln Q(γ) + Σ ln(1 + γ λ_k),
@@ -48,38 +53,36 @@ class Restricted {
   }
   double noise(double ratio) const { return std::sqrt(left(ratio) / freedom_); }
 
-  /// Least over ratio: a grid in its logarithm, then golden section.
+  /// Least over ratio: a grid in its logarithm, then Brent's method.
   double best() const {
     constexpr int points = 60;
     const double low = std::log(least_ratio), width = (std::log(largest_ratio) - low) / points;
     int at = 0;
     double least = std::numeric_limits<double>::infinity();
     for (int i = 0; i <= points; ++i)
-      if (const double value = minus_two_log(std::exp(low + i * width)); value < least) {
+      if (const double value = at_logarithm(low + i * width); value < least) {
         least = value;
         at = i;
       }
-    double a = low + (at - 1) * width, b = low + (at + 1) * width;
-    for (int i = 0; i < 60; ++i) {
-      const double c = a + 0.381966 * (b - a), d = b - 0.381966 * (b - a);
-      (minus_two_log(std::exp(c)) < minus_two_log(std::exp(d)) ? b : a) =
-          minus_two_log(std::exp(c)) < minus_two_log(std::exp(d)) ? d : c;
-    }
-    return std::exp(0.5 * (a + b));
+    return std::exp(boost::math::tools::brent_find_minima([this](double x) { return at_logarithm(x); },
+                                                          low + (at - 1) * width, low + (at + 1) * width,
+                                                          std::numeric_limits<double>::digits)
+                        .first);
   }
 
-  /// Value at which −2 ln L reaches `allowed`, from `from` towards `end`.
+  /// Ratio at which −2 ln L reaches `allowed`, from `from` towards `end`.
   double edge(double from, double end, double allowed) const {
     if (minus_two_log(end) <= allowed) return end;
-    double inside = std::log(from), outside = std::log(end);
-    for (int i = 0; i < 60; ++i) {
-      const double middle = 0.5 * (inside + outside);
-      (minus_two_log(std::exp(middle)) <= allowed ? inside : outside) = middle;
-    }
-    return std::exp(inside);
+    const auto above = [&](double x) { return at_logarithm(x) - allowed; };
+    if (!(above(std::log(from)) < 0)) return from;
+    const auto [low, high] = std::minmax({std::log(from), std::log(end)});
+    return std::exp(
+        boost::math::tools::bisect(above, low, high, boost::math::tools::eps_tolerance<double>(relative_bits)).first);
   }
 
  private:
+  double at_logarithm(double x) const { return minus_two_log(std::exp(x)); }
+
   double freedom_, squares_;
   Eigen::VectorXd lambda_, y_squared_;
 };
@@ -92,6 +95,79 @@ struct Tried {
   double size_of(double ratio) const { return unit * std::sqrt(ratio) * likelihood.noise(ratio); }
 };
 
+/// Derivatives and residuals of a fit, and derivatives along the tips' displacements.
+struct Linearised {
+  FittedRows rows;
+  Eigen::Index parameters;
+
+  auto J() const { return rows.J.leftCols(parameters); }
+  auto along() const { return rows.J.rightCols(rows.J.cols() - parameters); }
+};
+
+Linearised linearised(const IdentificationModel& model, const VariantColumns& columns,
+                      const std::vector<MeasuredPose>& poses, const Fit& fit) {
+  std::vector<int> selected = columns.selected;
+  for (int tip = 0; tip < model.tips(); ++tip)
+    for (int k = 0; k < 3; ++k) selected.push_back(model.tip_column(tip, k));
+  return {fitted_rows(model, selected, poses, fit.correction, fit), Eigen::Index(columns.selected.size())};
+}
+
+EffectRows rows_of(const IdentificationModel& model, const UnmodelledSize& size, const std::vector<MeasuredPose>& poses,
+                   const Linearised& at) {
+  const auto effect = std::make_shared<UnmodelledEffect>(model, size);
+  const Eigen::MatrixXd places = places_of(*effect, poses);
+  return {EffectFeatures(effect, places, int(places.cols())).at(places), at.along(), at.rows.first};
+}
+
+Tried tried(const IdentificationModel& model, const std::vector<MeasuredPose>& poses, const Linearised& at,
+            double length, const std::vector<double>& own_sizes) {
+  Eigen::MatrixXd J = at.J(), r = at.rows.r, F = rows_of(model, {1.0, 0.0, length}, poses, at).dense();
+  if (!own_sizes.empty()) {
+    const IndependentRows beside(rows_of(model, {1.0, 0.0, length, own_sizes, false}, poses, at));
+    for (Eigen::MatrixXd* rows : {&J, &r, &F}) beside.apply(*rows);
+  }
+  const ResidualProjector fitted(J);
+  r = fitted.left(r);
+  F = fitted.left(F);
+  // In units in which an effect of size one is as large as the noise.
+  const double unit = std::sqrt(double(F.rows()) / std::max(F.squaredNorm(), 1e-300));
+  const Restricted likelihood(F * unit, r.col(0), at.parameters);
+  const double best = likelihood.best();
+  return {likelihood, length, unit, best, likelihood.minus_two_log(best)};
+}
+
+std::vector<double> lengths_to_try() {
+  std::vector<double> lengths;
+  lengths.reserve(lengths_tried);
+  for (int i = 0; i < lengths_tried; ++i) lengths.push_back(shortest * std::pow(step, i));
+  return lengths;
+}
+
+/// The most likely effect and the sizes that any length leaves possible.
+void fill(SmoothEffect& result, const std::vector<Tried>& all) {
+  const auto least =
+      std::min_element(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.value < b.value; });
+  result.length = least->length;
+  result.size = least->size_of(least->best);
+  result.noise = least->likelihood.noise(least->best);
+  result.lower = result.upper = result.size;
+  const double allowed = least->value + half_95;
+  for (const Tried& t : all) {
+    if (t.value > allowed) continue;
+    const double low = t.likelihood.edge(t.best, least_ratio, allowed),
+                 high = t.likelihood.edge(t.best, largest_ratio, allowed);
+    result.lower = std::min(result.lower, low > least_ratio ? t.size_of(low) : 0.0);
+    result.upper =
+        std::max(result.upper, high < largest_ratio ? t.size_of(high) : std::numeric_limits<double>::infinity());
+  }
+  result.statistic = std::max(0.0, least->likelihood.minus_two_log(0.0) - least->value);
+  result.probability = std::min(1.0, 0.5 * double(all.size()) * chi_square_exceeded(result.statistic, 1));
+  if (result.statistic > 1e-6) return;
+  result.size = result.lower = 0.0;
+  result.noise = all.back().likelihood.noise(0.0);
+  result.probability = 1.0;
+}
+
 }  // namespace
 
 SmoothEffect smooth_effect(const IdentificationModel& model, const VariantColumns& columns,
@@ -101,7 +177,7 @@ SmoothEffect smooth_effect(const IdentificationModel& model, const VariantColumn
   // Some of very many, as a fit of these alone.
   std::vector<MeasuredPose> list;
   Fit some;
-  some.readings = 0;
+  some.correction = fit.correction;
   const std::size_t taken = std::min(poses.size(), most_poses);
   for (std::size_t i = 0; i < taken; ++i) {
     const std::size_t k = i * poses.size() / taken;
@@ -117,68 +193,11 @@ SmoothEffect smooth_effect(const IdentificationModel& model, const VariantColumn
                                  result.poses, left, fewest_poses, fewest_left);
   if (!result.why_not.empty()) return result;
 
-  std::vector<double> lengths;
-  lengths.reserve(lengths_tried);
-  for (int i = 0; i < lengths_tried; ++i) lengths.push_back(shortest * std::pow(step, i));
-  if (length) lengths = {*length};
-  std::vector<int> selected = columns.selected;
-  for (int tip = 0; tip < model.tips(); ++tip)
-    for (int k = 0; k < 3; ++k) selected.push_back(model.tip_column(tip, k));
-  const FittedRows linear = fitted_rows(model, selected, list, fit.correction, some);
-  const auto own = Eigen::Index(columns.selected.size());
-  const Eigen::MatrixXd A = linear.J.rightCols(linear.J.cols() - own);
-  std::vector<Tried> tried;
-  double squares = 0;
-  for (const double l : lengths) {
-    Eigen::MatrixXd J = linear.J.leftCols(own), r = linear.r;
-    std::optional<IndependentRows> beside;
-    if (!own_sizes.empty()) {
-      const auto of_instruments =
-          std::make_shared<UnmodelledEffect>(model, UnmodelledSize{1.0, 0.0, l, own_sizes, false});
-      const Eigen::MatrixXd places = places_of(*of_instruments, list);
-      beside.emplace(
-          EffectRows(EffectFeatures(of_instruments, places, int(places.cols())).at(places), A, linear.first));
-      beside->apply(J);
-      beside->apply(r);
-    }
-    const ResidualProjector fitted(J);
-    r = fitted.left(r);
-    squares = r.squaredNorm();
-    const auto effect = std::make_shared<UnmodelledEffect>(model, UnmodelledSize{1.0, 0.0, l});
-    const Eigen::MatrixXd places = places_of(*effect, list);
-    const EffectFeatures features(effect, places, int(places.cols()));
-    Eigen::MatrixXd F = EffectRows(features.at(places), A, linear.first).dense();
-    if (beside) beside->apply(F);
-    F = fitted.left(F);
-    // In units in which an effect of size one is as large as the noise.
-    const double unit = std::sqrt(double(F.rows()) / std::max(F.squaredNorm(), 1e-300));
-    const Restricted likelihood(F * unit, r.col(0), own);
-    const double best = likelihood.best();
-    tried.push_back({likelihood, l, unit, best, likelihood.minus_two_log(best)});
-  }
-  const auto least =
-      std::min_element(tried.begin(), tried.end(), [](const auto& a, const auto& b) { return a.value < b.value; });
-  const double none = least->likelihood.minus_two_log(0.0);
-  result.length = least->length;
-  result.size = least->size_of(least->best);
-  result.noise = least->likelihood.noise(least->best);
-  result.lower = result.upper = result.size;
-  const double allowed = least->value + half_95;
-  for (const Tried& t : tried) {
-    if (t.value > allowed) continue;
-    const double low = t.likelihood.edge(t.best, least_ratio, allowed),
-                 high = t.likelihood.edge(t.best, largest_ratio, allowed);
-    result.lower = std::min(result.lower, low > least_ratio ? t.size_of(low) : 0.0);
-    result.upper =
-        std::max(result.upper, high < largest_ratio ? t.size_of(high) : std::numeric_limits<double>::infinity());
-  }
-  result.statistic = std::max(0.0, none - least->value);
-  result.probability = std::min(1.0, 0.5 * double(lengths.size()) * chi_square_exceeded(result.statistic, 1));
-  if (!(result.statistic > 1e-6)) {
-    result.size = result.lower = 0.0;
-    result.noise = std::sqrt(squares / left);
-    result.probability = 1.0;
-  }
+  const Linearised at = linearised(model, columns, list, some);
+  std::vector<Tried> all;
+  for (const double l : length ? std::vector{*length} : lengths_to_try())
+    all.push_back(tried(model, list, at, l, own_sizes));
+  fill(result, all);
   return result;
 }
 

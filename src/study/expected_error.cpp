@@ -167,8 +167,7 @@ EffectBetween effect_between(const std::shared_ptr<const UnmodelledEffect>& effe
     along.middleCols(tip * effect->twists(), effect->twists()) =
         readings.along.middleCols(tip * tip_twists, effect->twists());
   effect->take_sizes(along);
-  return {features, EffectRows(at.size() > 0 ? features.at(at) : Eigen::MatrixXd(features.count(), 0), std::move(along),
-                               readings.first)};
+  return {features, EffectRows(features.at(at), std::move(along), readings.first)};
 }
 
 /// Mean squares at the places: of the noise, and of an effect of unit size; m².

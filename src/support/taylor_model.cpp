@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "posewright/support/instruction_set.hpp"
-#include "taylor/kernels.hpp"
+#include "taylor/taylor_kernels.hpp"
 
 namespace posewright {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "posewright/support/random.hpp"
-#include "src/support/taylor/kernels.hpp"
+#include "src/support/taylor/taylor_kernels.hpp"
 #include "tests/kit/taylor_value.hpp"
 
 namespace posewright {

@@ -1,2 +1,2 @@
 #define TAYLOR_KERNELS taylor_kernels_sse2
-#include "kernels.inl"
+#include "taylor_kernels.inl"

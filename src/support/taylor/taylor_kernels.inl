@@ -1,7 +1,7 @@
 // Compiled once per instruction set, each time with another TAYLOR_KERNELS. Includes nothing that has inline functions:
 // code built here for AVX must not be merged with the same function built elsewhere without.
 
-#include "kernels.hpp"
+#include "taylor_kernels.hpp"
 
 namespace posewright {
 namespace {

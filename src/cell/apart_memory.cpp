@@ -14,15 +14,15 @@ ApartMemory& ApartMemory::of(const Scene& scene) {
 void ApartMemory::forget(const Scene& scene) {
   scene_ = scene.number;
   const std::size_t places = scene.pairs.size() * std::size_t(scene.frames->poses_per_configuration());
-  dimension_ = scene.pairs.empty() ? 0 : std::size_t(scene.pairs.front().travel.front().size());
+  dimension_ = scene.pairs.empty() ? 0 : std::size_t(scene.pairs.front().approach.front().size());
   spare_.assign(places, never);
   states_.assign(places * dimension_, 0.0);
 }
 
 double ApartMemory::moved(const BodyPair& pair, std::size_t place, int pose, std::span<const double> q) const {
-  const double *travel = pair.travel[std::size_t(pose)].data(), *then = states_.data() + place * dimension_;
+  const double *approach = pair.approach[std::size_t(pose)].data(), *then = states_.data() + place * dimension_;
   double sum = 0;
-  for (std::size_t k = 0; k < dimension_; ++k) sum += travel[k] * std::abs(q[k] - then[k]);
+  for (std::size_t k = 0; k < dimension_; ++k) sum += approach[k] * std::abs(q[k] - then[k]);
   return sum;
 }
 

@@ -9,8 +9,8 @@
 namespace posewright {
 
 /// Cache of one thread for pairs at earlier states: a pair that had s to spare beyond its clearance at
-/// q₀ keeps it at every q with Σ travel_k |q_k − q₀_k| < s (the bound that motions are followed with; Schwarzer, Saha &
-/// Latombe 2005). Searches and bisections ask for states next to each other, so most pairs are not looked at again.
+/// q₀ keeps it at every q with Σ approach_k |q_k − q₀_k| < s (the bound that motions are followed with; Schwarzer, Saha
+/// & Latombe 2005). Searches and bisections ask for states next to each other, so most pairs are not looked at again.
 class ApartMemory {
  public:
   /// Cache of the calling thread for this scene; empty if its last scene was another.

@@ -34,7 +34,7 @@ ApartTable::ApartTable(std::vector<Axis> axes, std::vector<double> middle, doubl
     Level level{{}, reach, nullptr};
     double cells = 1;
     for (const Axis& axis : axes_) {
-      const double count = std::ceil(axis.travel * (axis.upper - axis.lower) * double(axes_.size()) / (2 * reach));
+      const double count = std::ceil(axis.approach * (axis.upper - axis.lower) * double(axes_.size()) / (2 * reach));
       level.counts.push_back(int(std::clamp(count, 1.0, most_cells)));
       cells *= level.counts.back();
     }
@@ -85,7 +85,7 @@ double ApartTable::spare_at_least(const Scene& scene, const BodyPair& pair, std:
       const int count = level.counts[k];
       cell[k] = std::clamp(int((at[k] - a.lower) / (a.upper - a.lower) * count), 0, count - 1);
       index = index * std::size_t(count) + std::size_t(cell[k]);
-      lost += a.travel * std::abs(at[k] - middle_of(level, k, cell[k]));
+      lost += a.approach * std::abs(at[k] - middle_of(level, k, cell[k]));
     }
     float spare = level.spare[index].load(std::memory_order_relaxed);
     if (spare == unknown) {

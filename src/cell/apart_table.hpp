@@ -13,7 +13,7 @@ struct Scene;
 
 /// Lower bounds of the distance beyond the clearance, for pairs that few coordinates move: cells of
 /// these coordinates' ranges, each with what the pair has in its middle, less what it may lose on the way from there
-/// (BodyPair::travel). A cell is measured when it is first asked for, at the same state whoever asks, so that answers
+/// (BodyPair::approach). A cell is measured when it is first asked for, at the same state whoever asks, so that answers
 /// depend on nothing else. Const and callable from several threads.
 class ApartTable {
  public:
@@ -22,7 +22,7 @@ class ApartTable {
     std::size_t coordinate;
     double lower, upper;  ///< rad or m
     double period;        ///< 0: none
-    double travel;        ///< m per rad or m, of BodyPair
+    double approach;      ///< m per rad or m, of BodyPair
   };
 
   /// @param middle  a configuration, whose other coordinates the pair does not depend on

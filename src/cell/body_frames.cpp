@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "posewright/model/pair_names.hpp"
 #include "posewright/model/serial_chain_kinematics.hpp"
@@ -32,6 +33,46 @@ void add_joint(BodyFrames::Rate& rate, const ChainJoint& joint, const Eigen::Iso
   rate.least_turn = std::min(rate.least_turn, std::abs(change));
 }
 
+/// How far points are from a place, and from the line through it along an axis, m: at most.
+struct Extent {
+  double from_origin = 0.0, from_axis = 0.0;
+};
+Extent extent_of(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& origin, const Eigen::Vector3d& axis) {
+  Extent extent;
+  for (const Eigen::Vector3d& p : points) {
+    extent.from_origin = std::max(extent.from_origin, (p - origin).norm());
+    extent.from_axis = std::max(extent.from_axis, (p - origin).cross(axis).norm());
+  }
+  return extent;
+}
+
+/// Points of frame b on the way down from it: how far the joints that carry others move them.
+class WayDown {
+ public:
+  explicit WayDown(std::span<const Eigen::Vector3d> points) : points_(points) {}
+  /// Variant for points of which only the distance from the frame's origin is known, m.
+  explicit WayDown(double from_origin) : first_(false), from_origin_(from_origin) {}
+  /// To the next joint. @return how far points are from its axis, m
+  double pass(const Eigen::Isometry3d& X_ParentJoint, const Eigen::Vector3d& axis_in_joint) {
+    const Eigen::Vector3d way = X_ParentJoint.translation(), axis = X_ParentJoint.linear() * axis_in_joint;
+    if (!std::exchange(first_, false)) {
+      const double from_axis = from_origin_ + way.cross(axis).norm();
+      from_origin_ += way.norm();
+      return from_axis;
+    }
+    const Extent extent = extent_of(points_, way, axis);
+    from_origin_ = extent.from_origin;
+    return extent.from_axis;
+  }
+  /// A joint may push its frame out so far, m.
+  void push(double pushed) { from_origin_ += pushed; }
+
+ private:
+  std::span<const Eigen::Vector3d> points_;
+  bool first_ = true;
+  double from_origin_ = 0.0;
+};
+
 /// Serial arm: frame k is that of the k-th joint after its motion.
 class ChainFrames : public BodyFrames {
  public:
@@ -58,7 +99,7 @@ class ChainFrames : public BodyFrames {
 
   Eigen::Vector3d axis(int b) const override { return chain_.joints[std::size_t(b - 1)].axis; }
 
-  Eigen::VectorXd travel(int pose, int a, int b, double radius, double axis_radius) const override {
+  Eigen::VectorXd travel(int pose, int a, int b, std::span<const Eigen::Vector3d> points) const override {
     Eigen::VectorXd bound = Eigen::VectorXd::Zero(Eigen::Index(dimension_));
     const auto moved_by = [&](int k, double from_axis) {
       const ChainJoint& joint = chain_.joints[std::size_t(k - 1)];
@@ -66,19 +107,19 @@ class ChainFrames : public BodyFrames {
           std::abs(joint.multiplier) * (joint.prismatic ? 1.0 : from_axis);
     };
     // Of frame k's points: from its own axis, and from its origin.
-    double from_axis = axis_radius, from_origin = radius;
+    Extent extent = b > a ? extent_of(points, Eigen::Vector3d::Zero(), axis(b)) : Extent{};
     for (int k = b; k > a; --k) {
-      moved_by(k, from_axis);
+      moved_by(k, extent.from_axis);
       if (k - 1 == a) break;
       const Eigen::Vector3d way = chain_.joints[std::size_t(k - 1)].X_ParentJoint.translation();
-      from_axis = way.cross(chain_.joints[std::size_t(k - 2)].axis).norm() + pushed_by(k) + from_origin;
-      from_origin += way.norm() + pushed_by(k);
+      extent.from_axis = way.cross(axis(k - 1)).norm() + pushed_by(k) + extent.from_origin;
+      extent.from_origin += way.norm() + pushed_by(k);
     }
-    // Frame b before a: the axis of joint k goes through the end of the fixed way to it.
+    WayDown down(points);
     for (int k = b + 1; k <= a; ++k) {
-      from_origin += chain_.joints[std::size_t(k - 1)].X_ParentJoint.translation().norm();
-      moved_by(k, from_origin);
-      from_origin += pushed_by(k);
+      const ChainJoint& joint = chain_.joints[std::size_t(k - 1)];
+      moved_by(k, down.pass(k == 1 ? chain_.X_MeasureBase * joint.X_ParentJoint : joint.X_ParentJoint, joint.axis));
+      down.push(pushed_by(k));
     }
     return bound;
   }
@@ -185,7 +226,7 @@ class TreeFrames : public BodyFrames {
 
   Eigen::Vector3d axis(int b) const override { return joint(b).axis; }
 
-  Eigen::VectorXd travel(int, int a, int b, double radius, double axis_radius) const override {
+  Eigen::VectorXd travel(int, int a, int b, std::span<const Eigen::Vector3d> points) const override {
     Eigen::VectorXd bound = Eigen::VectorXd::Zero(Eigen::Index(dimension_));
     const std::vector<int> up = way_to(b), down = way_to(a);
     const auto common = std::ranges::find_if(up, [&](int k) { return std::ranges::count(down, k) > 0; });
@@ -194,20 +235,20 @@ class TreeFrames : public BodyFrames {
           std::abs(joint(k).multiplier) * (joint(k).prismatic ? 1.0 : from_axis);
     };
     // Of frame k's points: from its own axis, and from its origin.
-    double from_axis = axis_radius, from_origin = radius;
+    Extent extent = extent_of(points, Eigen::Vector3d::Zero(), b > 0 ? axis(b) : Eigen::Vector3d::UnitZ());
     for (auto k = up.begin(); k != common; ++k) {
-      moved_by(*k, from_axis);
+      moved_by(*k, extent.from_axis);
       const Eigen::Vector3d way = joint(*k).X_ParentJoint.translation();
       const double pushed = pushed_by(*k);
       if (const int above = tree_.parents[std::size_t(*k - 1)]; above > 0)
-        from_axis = way.cross(joint(above).axis).norm() + pushed + from_origin;
-      from_origin += way.norm() + pushed;
+        extent.from_axis = way.cross(joint(above).axis).norm() + pushed + extent.from_origin;
+      extent.from_origin += way.norm() + pushed;
     }
-    // Down to frame a: the axis of joint k goes through the end of the fixed way to it.
+    // Down to frame a; what came up to another frame first has moved about it.
+    WayDown below = common == up.begin() ? WayDown(points) : WayDown(extent.from_origin);
     for (auto k = std::make_reverse_iterator(std::ranges::find(down, *common)); k != down.rend(); ++k) {
-      from_origin += joint(*k).X_ParentJoint.translation().norm();
-      moved_by(*k, from_origin);
-      from_origin += pushed_by(*k);
+      moved_by(*k, below.pass(joint(*k).X_ParentJoint, joint(*k).axis));
+      below.push(pushed_by(*k));
     }
     return bound;
   }
@@ -307,7 +348,10 @@ class PlatformFrames : public BodyFrames {
 
   Eigen::Vector3d axis(int) const override { return Eigen::Vector3d::UnitZ(); }
 
-  Eigen::VectorXd travel(int, int, int, double radius, double) const override {
+  Eigen::VectorXd travel(int, int, int b, std::span<const Eigen::Vector3d> points) const override {
+    // What stands still is as far from the platform's origin as that goes.
+    const double radius = b > 0 ? extent_of(points, Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ()).from_origin
+                                : std::numeric_limits<double>::infinity();
     Eigen::VectorXd bound = Eigen::VectorXd::Zero(Eigen::Index(model_.coordinates().size()));
     for (std::size_t i = 0; i < model_.coordinates().size(); ++i) {
       const Coordinate& c = model_.coordinates()[i];

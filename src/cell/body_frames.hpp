@@ -47,11 +47,10 @@ class BodyFrames {
   virtual void poses(std::span<const double> q, int pose, std::span<Eigen::Isometry3d> X_MeasureFrame) const = 0;
   /// Axis of the joint that moves frame b, in frame b; z for a platform.
   virtual Eigen::Vector3d axis(int b) const = 0;
-  /// Per coordinate (of all of a configuration): how far a point of frame b moves at most relative to frame a while
-  /// that coordinate changes by one unit.
-  /// @param radius       m, largest distance of these points from the origin of b
-  /// @param axis_radius  m, the same from the line through the origin along axis(b); not read if b < a
-  virtual Eigen::VectorXd travel(int pose, int a, int b, double radius, double axis_radius) const = 0;
+  /// Per coordinate (of all of a configuration): how far points of frame b, or what is between them, move at most
+  /// relative to frame a while that coordinate changes by one unit, m; infinite where no bound is known.
+  /// @param points  m, in frame b
+  virtual Eigen::VectorXd travel(int pose, int a, int b, std::span<const Eigen::Vector3d> points) const = 0;
   /// How a frame moves relative to another one along a straight motion.
   struct Rate {
     Eigen::Vector3d v = Eigen::Vector3d::Zero(), omega = Eigen::Vector3d::Zero();  ///< p moves by v + omega × p

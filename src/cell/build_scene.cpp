@@ -91,15 +91,23 @@ class SceneBuilder {
       std::swap(a, b);
     scene_.pairs.push_back({a, b, reason, clearance + motion_resolution, clearance, 0.0, {}});
     const Body &first = scene_.bodies[std::size_t(a)], &second = scene_.bodies[std::size_t(b)];
-    double reach = 0, axis_reach = 0;
-    const Eigen::Vector3d axis = second.frame > 0 ? scene_.frames->axis(second.frame) : Eigen::Vector3d::UnitZ();
-    for (const Eigen::Vector3d& corner : second.solid->corners()) {
-      const Eigen::Vector3d p = second.X_FrameBody * corner;
-      reach = std::max(reach, p.norm());
-      axis_reach = std::max(axis_reach, p.cross(axis).norm());
+    const std::vector<Eigen::Vector3d> of_first = corners_of(first), of_second = corners_of(second);
+    // Of two bodies either one may be said to stand still. Planes have no corners: they are the ones that do.
+    const bool both_ways = !first.solid->plane() && !second.solid->plane();
+    BodyPair& pair = scene_.pairs.back();
+    for (int pose = 0; pose < scene_.frames->poses_per_configuration(); ++pose) {
+      pair.travel.push_back(scene_.frames->travel(pose, first.frame, second.frame, of_second));
+      pair.approach.push_back(pair.travel.back());
+      if (both_ways)
+        pair.approach.back() =
+            pair.travel.back().cwiseMin(scene_.frames->travel(pose, second.frame, first.frame, of_first));
     }
-    for (int pose = 0; pose < scene_.frames->poses_per_configuration(); ++pose)
-      scene_.pairs.back().travel.push_back(scene_.frames->travel(pose, first.frame, second.frame, reach, axis_reach));
+  }
+
+  static std::vector<Eigen::Vector3d> corners_of(const Body& body) {
+    std::vector<Eigen::Vector3d> corners;
+    for (const Eigen::Vector3d& corner : body.solid->corners()) corners.push_back(body.X_FrameBody * corner);
+    return corners;
   }
 
   void add_self_pairs() {
@@ -231,11 +239,11 @@ class SceneBuilder {
     if (scene_.frames->poses_per_configuration() != 1) return;
     const std::vector<double> middle = middle_configuration();
     for (BodyPair& pair : scene_.pairs) {
-      const Eigen::VectorXd& travel = pair.travel.front();
+      const Eigen::VectorXd& approach = pair.approach.front();
       Eigen::Index moving = 0;
-      travel.maxCoeff(&moving);
+      approach.maxCoeff(&moving);
       const Coordinate& c = coordinates[std::size_t(moving)];
-      if (pair.never_near || (travel.array() != 0).count() != 1 || c.discrete()) continue;
+      if (pair.never_near || (approach.array() != 0).count() != 1 || c.discrete()) continue;
       std::vector<double> first = middle, last = middle;
       first[std::size_t(moving)] = c.lower - beyond_limits;
       last[std::size_t(moving)] = c.upper + beyond_limits;
@@ -252,12 +260,12 @@ class SceneBuilder {
       std::vector<ApartTable::Axis> axes;
       bool fits = !pair.never_near && pair.table == nullptr;
       for (std::size_t k = 0; k < coordinates.size(); ++k) {
-        const double travel = pair.travel.front()[Eigen::Index(k)];
+        const double approach = pair.approach.front()[Eigen::Index(k)];
         const Coordinate& c = coordinates[k];
-        if (!(travel > 0)) continue;
+        if (!(approach > 0)) continue;
         fits = fits && !c.discrete() && c.lower < c.upper && axes.size() < ApartTable::most_axes;
         if (fits)
-          axes.push_back({k, c.lower - beyond_limits, c.upper + beyond_limits, scene_.frames->period(k), travel});
+          axes.push_back({k, c.lower - beyond_limits, c.upper + beyond_limits, scene_.frames->period(k), approach});
       }
       if (fits && !axes.empty()) pair.table = std::make_shared<ApartTable>(std::move(axes), middle, pair.room);
     }

@@ -102,7 +102,7 @@ class SmallestDistance {
     const Eigen::Map<const Eigen::VectorXd> a(from.data(), Eigen::Index(from.size())), b(to.data(), a.size());
     const Eigen::VectorXd change = (b - a).cwiseAbs();
     for (const BodyPair& pair : scene_.pairs) {
-      const double rate = pair.travel[std::size_t(pose)].dot(change);
+      const double rate = pair.approach[std::size_t(pose)].dot(change);
       if (!(rate > 0)) continue;
       for (double t = 0; t < 1;) {
         place(at(t), pose);

@@ -15,7 +15,7 @@ constexpr double least_step = 0.0005;
 struct Stretch {
   const BodyPair* pair;
   double begin, end;              // shares of the motion
-  double travel;                  // m that the two move at most relative to each other from one end to the other
+  double travel;                  // m by which their distance changes at most from one end to the other
   double spare_begin, spare_end;  // m
   bool passed() const { return spare_begin + spare_end + 2 * motion_resolution >= travel; }
 };
@@ -146,7 +146,7 @@ bool keep_apart(const Scene& scene, std::span<const BodyPair> pairs, int pose, s
   now.clear();
   for (const BodyPair& pair : pairs)
     if (!pair.never_near)
-      now.push_back({&pair, 0, 1, pair.travel[std::size_t(pose)].dot((end - begin).cwiseAbs()), 0, 0});
+      now.push_back({&pair, 0, 1, pair.approach[std::size_t(pose)].dot((end - begin).cwiseAbs()), 0, 0});
   for (const double t : {1.0, 0.0}) {
     states.go_to(t);
     for (Stretch& whole : now) {

@@ -47,10 +47,12 @@ struct Body {
 struct BodyPair {
   int a = 0, b = 0;  ///< bodies; a is an obstacle, or its frame is not above that of b
   int reason = 0;
-  double clearance = 0.0;               ///< m, margins included
-  double asked = 0.0;                   ///< m, without margins
-  double least = 0.0;                   ///< m, by which the tolerances may move the two relative to each other
-  std::vector<Eigen::VectorXd> travel;  ///< per pose of a configuration: see BodyFrames::travel
+  double clearance = 0.0;                   ///< m, margins included
+  double asked = 0.0;                       ///< m, without margins
+  double least = 0.0;                       ///< m, by which the tolerances may move the two relative to each other
+  std::vector<Eigen::VectorXd> travel;      ///< per pose of a configuration: of b's points, see BodyFrames::travel
+  std::vector<Eigen::VectorXd> approach{};  ///< the same by which their distance changes at most: no more than points
+                                            ///< of either move relative to the other
   double room = std::numeric_limits<double>::infinity();  ///< m beyond the clearance that the two hardly ever have
   bool never_near = false;  ///< keeps its clearance wherever the robot may stand: need not be looked at
   std::shared_ptr<const ApartTable> table{};  ///< of a pair that few coordinates move; null: none

@@ -79,6 +79,57 @@ void expect_the_definition(const Problem& problem, int draws, int steps = 0) {
   EXPECT_GT(hit, draws * (1 + steps) / 20);
 }
 
+/// Distances of all pairs from one configuration to another change by no more than BodyPair::approach says.
+void expect_slow_distances(const Problem& problem, int draws) {
+  const auto cell = make_cell(problem);
+  const Scene& scene = cell->collision->scene();
+  const std::vector<Coordinate>& coordinates = cell->model->coordinates();
+  Random random(13, 0);
+  std::vector<Eigen::Isometry3d> X(std::size_t(scene.frames->count())), Y = X;
+  int shorter = 0;
+  double most = 0;
+  for (int i = 0; i < draws; ++i) {
+    // One coordinate by as little as a bound for it can be told from, or all of them.
+    std::vector<double> q, r;
+    for (const Coordinate& c : coordinates)
+      q.push_back(c.discrete() ? c.values.front() : random.uniform(c.lower, c.upper));
+    r = q;
+    const int one = i % 4 == 0 ? -1 : random.index(int(q.size()));
+    const double share = one < 0 ? random.uniform(0.01, 1) : 0.02;
+    for (std::size_t k = 0; k < q.size(); ++k)
+      if (const Coordinate& c = coordinates[k]; !c.discrete() && (one < 0 || one == int(k)))
+        r[k] += share * (random.uniform(c.lower, c.upper) - q[k]);
+    scene.frames->poses(q, 0, X);
+    scene.frames->poses(r, 0, Y);
+    for (const BodyPair& pair : scene.pairs) {
+      const Body &a = scene.bodies[std::size_t(pair.a)], &b = scene.bodies[std::size_t(pair.b)];
+      const auto apart = [&](const auto& Z) {
+        return distance(*a.solid, Z[std::size_t(a.frame)] * a.X_FrameBody, *b.solid,
+                        Z[std::size_t(b.frame)] * b.X_FrameBody, 10);
+      };
+      double allowed = 0, by_points = 0;
+      for (std::size_t k = 0; k < q.size(); ++k) {
+        const double change = std::abs(r[k] - q[k]);
+        allowed += change > 0 ? pair.approach.front()[Eigen::Index(k)] * change : 0.0;
+        by_points += change > 0 ? pair.travel.front()[Eigen::Index(k)] * change : 0.0;
+      }
+      const double changed = std::abs(apart(X) - apart(Y));
+      // FCL 0.7 tells some boxes that are farther away up to a decimetre wrong; no point moves by that.
+      if (std::max(apart(X), apart(Y)) > 0.25 || changed > by_points + 2e-5) continue;
+      EXPECT_LE(changed, allowed + 2e-5) << a.name << " and " << b.name << ", coordinate " << one;
+      shorter += allowed < 0.5 * by_points;
+      if (one >= 0 && allowed > 1e-3) most = std::max(most, changed / allowed);
+    }
+  }
+  EXPECT_GT(shorter, draws / 10);
+  EXPECT_GT(most, 0.5);
+}
+
+TEST(Collision, DistancesChangeNoFasterThanEitherBodySeesTheOther) {
+  expect_slow_distances(read_problem(POSEWRIGHT_SOURCE_DIR "/examples/cell/problem.yaml"), 1500);
+  expect_slow_distances(read_problem(POSEWRIGHT_SOURCE_DIR "/examples/humanoid/both_hands.yaml"), 400);
+}
+
 TEST(Collision, OfTheExampleCellIsThatOfAllItsPairs) {
   expect_the_definition(read_problem(POSEWRIGHT_SOURCE_DIR "/examples/cell/problem.yaml"), 4000);
 }

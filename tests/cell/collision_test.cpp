@@ -199,7 +199,7 @@ TEST_P(Travel, BoundsHowFarAPointOfAnyLinkMoves) {
   for (int i = 0; i < 300; ++i) {
     const int b = 1 + random.index(frames->count() - 1), a = random.index(b);
     const Eigen::Vector3d p(random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3));
-    const Eigen::VectorXd bound = frames->travel(0, a, b, p.norm(), p.cross(frames->axis(b)).norm());
+    const Eigen::VectorXd bound = frames->travel(0, a, b, {&p, 1});
     std::vector<double> q = draw(), r = draw();
     const double share = random.uniform(0.01, 1);
     for (std::size_t k = 0; k < q.size(); ++k) r[k] = q[k] + share * (r[k] - q[k]);

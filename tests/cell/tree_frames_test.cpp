@@ -168,7 +168,7 @@ TEST_F(TreeCell, BoundsMotionsBetweenBranches) {
     const double moved =
         (Y[std::size_t(a)].inverse() * Y[std::size_t(b)] * p - X[std::size_t(a)].inverse() * X[std::size_t(b)] * p)
             .norm();
-    const Eigen::VectorXd bound = frames->travel(0, a, b, p.norm(), p.cross(frames->axis(b)).norm());
+    const Eigen::VectorXd bound = frames->travel(0, a, b, {&p, 1});
     EXPECT_LE(moved, 1e-5 * bound[Eigen::Index(k)] + 1e-9) << a << " " << b << " " << k;
   }
 }

@@ -20,6 +20,34 @@ struct Stretch {
   bool passed() const { return spare_begin + spare_end + 2 * motion_resolution >= travel; }
 };
 
+/// How often each pair of a scene ended a motion, as far as one thread saw it. Which pair of a state is asked first
+/// decides how long an answer takes, never what it is.
+class Offenders {
+ public:
+  /// Those of the calling thread; none yet if its last scene was another.
+  static Offenders& of(const Scene& scene) {
+    static thread_local Offenders offenders;
+    if (offenders.scene_ != scene.number || offenders.times_.size() != scene.pairs.size()) {
+      offenders.scene_ = scene.number;
+      offenders.times_.assign(scene.pairs.size(), 0);
+    }
+    offenders.first_ = scene.pairs.data();
+    return offenders;
+  }
+  void count(const BodyPair& pair) { ++times_[std::size_t(&pair - first_)]; }
+  void put_first(std::vector<Stretch>& stretches) const {
+    std::stable_sort(stretches.begin(), stretches.end(),
+                     [&](const Stretch& a, const Stretch& b) { return times(a) > times(b); });
+  }
+
+ private:
+  long times(const Stretch& stretch) const { return times_[std::size_t(stretch.pair - first_)]; }
+
+  std::uint64_t scene_ = 0;
+  const BodyPair* first_ = nullptr;
+  std::vector<long> times_;
+};
+
 /// The states of one motion.
 class MotionStates {
  public:
@@ -138,11 +166,26 @@ double spare_of(const Scene& scene, const BodyPair& pair, const Eigen::Isometry3
   return std::max(hulls, clearance_of_faces(a, X_a, b, X_b, pair.clearance, most_asked) - pair.clearance);
 }
 
+namespace {
+
+/// True if an obstacle is in the way half-way, by more than two looks at the ends would leave open. Most motions that
+/// collide are told by that, for a small part of what it takes to look at all pairs.
+bool is_blocked_half_way(const Scene& scene, std::span<const BodyPair> pairs, MotionStates& states) {
+  states.go_to(0.5);
+  return std::any_of(pairs.begin(), pairs.end(), [&](const BodyPair& pair) {
+    return !pair.never_near && scene.bodies[std::size_t(pair.a)].obstacle &&
+           states.look(pair, 0.0, 0.0).spare < -motion_resolution;
+  });
+}
+
+}  // namespace
+
 bool keep_apart(const Scene& scene, std::span<const BodyPair> pairs, int pose, std::span<const double> from,
                 std::span<const double> to, long most_looks) {
   static thread_local std::vector<Stretch> now, next, second_halves;
   const Eigen::Map<const Eigen::VectorXd> begin(from.data(), Eigen::Index(from.size())), end(to.data(), begin.size());
   MotionStates states(scene, pose, from, to);
+  if (is_blocked_half_way(scene, pairs, states)) return false;
   now.clear();
   for (const BodyPair& pair : pairs)
     if (!pair.never_near)
@@ -156,6 +199,8 @@ bool keep_apart(const Scene& scene, std::span<const BodyPair> pairs, int pose, s
     }
   }
   std::erase_if(now, [](const Stretch& whole) { return whole.passed(); });
+  Offenders& offenders = Offenders::of(scene);
+  offenders.put_first(now);
   // By halves: most motions that collide do so at one of the first states, and a state tells of both its sides.
   while (!now.empty()) {
     next.clear();
@@ -169,7 +214,10 @@ bool keep_apart(const Scene& scene, std::span<const BodyPair> pairs, int pose, s
         const double half = s.travel / 2;
         const double needed = half - std::min(s.spare_begin, s.spare_end) - 2 * motion_resolution;
         const auto [spare, kept] = states.look(*s.pair, std::max(0.0, needed), middle - first);
-        if (spare < 0) return false;
+        if (spare < 0) {
+          offenders.count(*s.pair);
+          return false;
+        }
         const Stretch one{s.pair, first, middle, half, s.spare_begin, spare};
         const Stretch other{s.pair, middle, s.end, half, spare, s.spare_end};
         if (!kept[0] && !one.passed()) next.push_back(one);

@@ -43,11 +43,17 @@ class NuisanceState : public DesignState {
     const int k = members()[std::size_t(position)];
     rest_.leave(k);
     Swap best{-1, min_gain};
-    const std::size_t count = blocks().count();
-    for (std::size_t j = rest_.next(0, best.gain, blocked()); j < count; j = rest_.next(j + 1, best.gain, blocked())) {
+    // Of equal gains the first candidate's counts, in whatever order they are asked for.
+    const auto ask = [&](std::size_t j) {
       const double gain = rest_.gain(int(j));
-      if (gain > best.gain) best = {int(j), gain};
-    }
+      const bool is_first = best.enter >= 0 && gain == best.gain && int(j) < best.enter;
+      if (gain > best.gain || is_first) best = {int(j), gain};
+    };
+    // What gains much leaves few that may gain more.
+    const std::size_t count = blocks().count(), likely = likely_best();
+    if (likely < count) ask(likely);
+    for (std::size_t j = rest_.next(0, best.gain, blocked()); j < count; j = rest_.next(j + 1, best.gain, blocked()))
+      if (j != likely) ask(j);
     if (best.enter < 0) return {};
     if (!std::isfinite(rest_.value())) return best;
     // Where a member was indispensable the gain rests on a ridge; only the exact one counts.
@@ -56,6 +62,15 @@ class NuisanceState : public DesignState {
   }
 
   void do_change(int leave, int enter) override { rest_.exchange(leave, enter); }
+
+  /// Candidate of the largest sensitivity that may enter; their number if none may.
+  std::size_t likely_best() const {
+    const std::vector<double>& d = rest_.sensitivities();
+    std::size_t best = d.size();
+    for (std::size_t j = 0; j < d.size(); ++j)
+      if (blocked()[j] == 0 && (best == d.size() || d[j] > d[best])) best = j;
+    return best;
+  }
 
   LeaveOneOut rest_;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "posewright/criterion/divide_rows.hpp"
 #include "posewright/model/whitening.hpp"
 #include "posewright/proof/bounded_space.hpp"
 #include "posewright/support/dense.hpp"
@@ -13,7 +14,7 @@ class StudyProbe : public ConfigurationSpace::Probe {
  public:
   StudyProbe(const std::vector<SpacePart>& parts, const Configurations& measured, const Spacing& spacing,
              const Eigen::MatrixXd& R)
-      : parts_(parts), measured_(measured), spacing_(spacing), rows_of_R_(R), scratch_(parts.size()) {
+      : parts_(parts), measured_(measured), spacing_(spacing), rows_of_R_(R), divisor_(R), scratch_(parts.size()) {
     int rows = 0;
     for (const SpacePart& part : parts) {
       first_row_.push_back(rows);
@@ -114,7 +115,7 @@ class StudyProbe : public ConfigurationSpace::Probe {
       column += width;
     }
     white_ = raw_;
-    divide_by_upper(white_);
+    divisor_.divide(white_);
     if (!white_.allFinite()) return false;
     filled_.assign(q.begin(), q.end());
     return true;
@@ -125,19 +126,6 @@ class StudyProbe : public ConfigurationSpace::Probe {
     for (std::size_t i = 0; i < measured_.count(); ++i)
       if (spacing_.too_near(measured_[i], q)) return false;
     return true;
-  }
-
-  /// X R⁻¹, row by row: blocks are small, and a library's solver for large ones takes longer to begin than this to end.
-  void divide_by_upper(BlockArray::RowMatrix& X) const {
-    const Eigen::Index m = X.cols();
-    for (Eigen::Index i = 0; i < X.rows(); ++i) {
-      double* x = X.row(i).data();
-      for (Eigen::Index j = 0; j < m; ++j) {
-        const double* r = rows_of_R_.row(j).data();
-        const double value = x[j] /= r[j];
-        for (Eigen::Index k = j + 1; k < m; ++k) x[k] -= value * r[k];
-      }
-    }
   }
 
   /// X R⁻ᵀ.
@@ -160,6 +148,7 @@ class StudyProbe : public ConfigurationSpace::Probe {
   const Configurations& measured_;
   const Spacing& spacing_;
   const BlockArray::RowMatrix rows_of_R_;
+  RowDivisor divisor_;
   std::vector<Linearisation> scratch_;
   std::vector<int> first_row_;
   std::vector<std::vector<int>> linearised_;  // columns of each part as its model gives them

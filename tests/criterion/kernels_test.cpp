@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "posewright/criterion/divide_rows.hpp"
 #include "tests/kit/random_blocks.hpp"
 
 namespace posewright {
@@ -47,6 +48,14 @@ std::vector<double> all_results(const Kernels& kernels, int rows, int columns) {
   for (const double least : {0.0, 1.0, 5.0, 25.0})
     all.push_back(double(kernels.next_between(blocks.data(), 0, 33, rows, stride, y.data(), 3, 2, d.data(),
                                               blocked.data(), 0.1, least)));
+  BlockArray divided = random_blocks(1, rows, columns, 3);
+  std::vector<double> above(std::size_t(columns * stride), 0.0), diagonal;
+  for (int j = 0; j < columns; ++j) {
+    diagonal.push_back(random.uniform(0.5, 2));
+    for (int k = j + 1; k < columns; ++k) above[std::size_t(j * stride + k)] = random.uniform(-1, 1) / columns;
+  }
+  kernels.divide_rows(divided.data(), rows, stride, above.data(), diagonal.data(), columns);
+  all.insert(all.end(), divided.data(), divided.data() + rows * stride);
   return all;
 }
 
@@ -67,6 +76,19 @@ TEST(Kernels, TracesEqualMatrixProducts) {
     for (int i = 0; i < 19; ++i) padded[std::size_t(k * 32 + i)] = t(k, i);
   kernels().traces(blocks.data(), 10, 3, blocks.stride(), padded.data(), 32, 19, d.data());
   for (std::size_t i = 0; i < 10; ++i) EXPECT_NEAR(d[i], (blocks.block(i) * t).squaredNorm(), 1e-12 * d[i]);
+}
+
+TEST(Kernels, DividedRowsTimesTheDivisorAreTheRows) {
+  for (const int rows : {1, 2, 3, 4, 9})
+    for (const int columns : {1, 3, 8, 13, 33}) {
+      const Eigen::MatrixXd R =
+          (Eigen::MatrixXd(random_blocks(1, columns, columns, 8).all()) / columns).triangularView<Eigen::Upper>();
+      const Eigen::MatrixXd divisor = R + Eigen::MatrixXd::Identity(columns, columns);
+      const BlockArray::RowMatrix x = random_blocks(1, rows, columns, 9).all();
+      BlockArray::RowMatrix divided = x;
+      RowDivisor(divisor).divide(divided);
+      EXPECT_LT((divided * divisor - x).cwiseAbs().maxCoeff(), 1e-13 * x.cwiseAbs().maxCoeff()) << columns;
+    }
 }
 
 TEST(Kernels, GramIsTheProductWithTheTransposedInItsLowerTriangle) {

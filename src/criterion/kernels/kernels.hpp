@@ -41,6 +41,9 @@ struct Kernels {
   /// out[o][i][x] = Σ_k m[i·columns + k] in[o][k][x], x < stride, for o < outer: one axis of a tensor times a matrix.
   void (*combine_rows)(const double* in, double* out, std::size_t outer, std::size_t stride, const double* m, int rows,
                        int columns);
+  /// x R⁻¹ in place for rows of x, R upper triangular: `above` has its rows of `stride` doubles with zeros up to the
+  /// diagonal, which is apart.
+  void (*divide_rows)(double* x, int rows, int stride, const double* above, const double* diagonal, int columns);
   const char* name;
 };
 

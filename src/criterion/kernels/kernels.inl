@@ -347,9 +347,28 @@ void combine_rows(const double* in, double* out, std::size_t outer, std::size_t 
                  stride, m, rows, columns);
 }
 
+template <int Rows>
+inline void divide(double* __restrict x, int stride, const double* __restrict above, const double* __restrict diagonal,
+                   int columns) {
+  for (int j = 0; j < columns; ++j, above += stride) {
+    double value[Rows];
+    for (int i = 0; i < Rows; ++i) value[i] = x[i * stride + j] /= diagonal[j];
+    for (int k = j / 4 * 4; k < stride; k += 4) {
+      const Lanes right = *reinterpret_cast<const Lanes*>(above + k);
+      for (int i = 0; i < Rows; ++i) *reinterpret_cast<Lanes*>(x + i * stride + k) -= value[i] * right;
+    }
+  }
+}
+
+void divide_rows(double* x, int rows, int stride, const double* above, const double* diagonal, int columns) {
+  int i = 0;
+  for (; i + 2 < rows; i += 3) divide<3>(x + i * stride, stride, above, diagonal, columns);
+  for (; i < rows; ++i) divide<1>(x + i * stride, stride, above, diagonal, columns);
+}
+
 }  // namespace
 
-const Kernels KERNELS_NAME = {subtract_squares, traces, determinant_ratio, cross,       scan_rows, next_block,
-                              next_between,     gram,   combine_rows,      KERNELS_TEXT};
+const Kernels KERNELS_NAME = {subtract_squares, traces, determinant_ratio, cross,       scan_rows,   next_block,
+                              next_between,     gram,   combine_rows,      divide_rows, KERNELS_TEXT};
 
 }  // namespace posewright

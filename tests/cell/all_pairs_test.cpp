@@ -125,6 +125,48 @@ void expect_slow_distances(const Problem& problem, int draws) {
   EXPECT_GT(most, 0.5);
 }
 
+/// What links have at most between them, and which of them always touch, by distances at all of a thousand states.
+void expect_room_by_definition(const Problem& problem) {
+  const auto cell = make_cell(problem);
+  const Scene& scene = cell->collision->scene();
+  Random random(271828, 0);
+  std::vector<Eigen::Isometry3d> X(std::size_t(scene.frames->count()));
+  std::vector<double> largest(scene.pairs.size(), 0.0), q;
+  for (int i = 0; i < 1000; ++i) {
+    q.clear();
+    for (const Coordinate& c : cell->model->coordinates())
+      q.push_back(c.discrete() ? c.values.front() : c.lower + random.uniform() * (c.upper - c.lower));
+    scene.frames->poses(q, 0, X);
+    for (std::size_t p = 0; p < scene.pairs.size(); ++p) {
+      const Body &a = scene.bodies[std::size_t(scene.pairs[p].a)], &b = scene.bodies[std::size_t(scene.pairs[p].b)];
+      if (std::isfinite(scene.pairs[p].room))
+        largest[p] = std::max(largest[p], distance(*a.solid, X[std::size_t(a.frame)] * a.X_FrameBody, *b.solid,
+                                                   X[std::size_t(b.frame)] * b.X_FrameBody, 1));
+    }
+  }
+  int close = 0;
+  for (std::size_t p = 0; p < scene.pairs.size(); ++p) {
+    const BodyPair& pair = scene.pairs[p];
+    if (!std::isfinite(pair.room)) continue;
+    ++close;
+    EXPECT_NEAR(pair.room, std::max(0.0, largest[p] - pair.clearance), 1e-9);
+  }
+  EXPECT_GT(close, 0);
+  EXPECT_EQ(scene.reduced.empty(), false);
+}
+
+TEST(Collision, RoomOfAVendorsLinksIsTheLargestOfAllStates) {
+  const std::filesystem::path robots = std::filesystem::path(POSEWRIGHT_SHARED_DIR) / "robots";
+  if (!std::filesystem::exists(robots)) GTEST_SKIP() << "the folder of shared robots is absent";
+  const TemporaryFolder folder;
+  expect_room_by_definition(read_problem(folder.write(
+      "p.yaml",
+      "posewright: 1\nrobot: {urdf: " +
+          (robots / "ur10/example-robot-data/robots/ur_description/urdf/ur10_robot.urdf").string() +
+          ", tip: tool0}\nmeasurement: {type: position, target: [0.1, 0, 0], device: {type: isotropic, noise: "
+          "0.1 mm}}\nvariants: {all: {parameters: auto}}\nworkspace: {collision: {clearance: 30 mm}}\n")));
+}
+
 TEST(Collision, DistancesChangeNoFasterThanEitherBodySeesTheOther) {
   expect_slow_distances(read_problem(POSEWRIGHT_SOURCE_DIR "/examples/cell/problem.yaml"), 1500);
   expect_slow_distances(read_problem(POSEWRIGHT_SOURCE_DIR "/examples/humanoid/both_hands.yaml"), 400);

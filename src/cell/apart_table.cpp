@@ -39,7 +39,7 @@ ApartTable::ApartTable(std::vector<Axis> axes, std::vector<double> middle, doubl
       cells *= level.counts.back();
     }
     if (cells > most_cells) break;
-    if (reach / 2 > room) continue;
+    if (reach > room) continue;
     level.spare = std::make_unique<std::atomic<float>[]>(std::size_t(cells));
     for (std::size_t i = 0; i < std::size_t(cells); ++i) level.spare[i].store(unknown, std::memory_order_relaxed);
     levels_.push_back(std::move(level));

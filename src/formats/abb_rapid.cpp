@@ -79,16 +79,15 @@ Exported write_rapid(const PoseSequence& sequence, const ExportOptions& options)
 }  // namespace
 
 PoseFormat abb_rapid() {
-  return {"abb-rapid",
-          "ABB RAPID module",
-          "ABB IRC5, OmniCore",
-          ".mod",
-          "six joints (external axes with axes); --coupling",
-          {"name", "speed", "settle", "wait", "digital-output", "digital-input", "tool", "coupling", "controller"},
-          true,
-          false,
-          write_rapid,
-          nullptr};
+  return {.name = "abb-rapid",
+          .description = "ABB RAPID module",
+          .used_by = "ABB IRC5, OmniCore",
+          .extension = ".mod",
+          .needs = "six joints (external axes with axes); --coupling",
+          .write = write_rapid,
+          .options = {"name", "speed", "settle", "wait", "digital-output", "digital-input", "tool", "coupling",
+                      "controller"},
+          .controller = true};
 }
 
 }  // namespace posewright::formats

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <sstream>
-
 #include "formats.hpp"
 #include "number_rows.hpp"
 #include "posewright/formats/format_text.hpp"
@@ -64,18 +62,14 @@ PoseTable read_delmia(const std::string& bytes, const std::string& file) {
 }  // namespace
 
 PoseFormat delmia() {
-  PoseFormat format = {"delmia",
-                       "tag table between tabs, mm and deg",
-                       "DELMIA Auto ID",
-                       ".txt",
-                       "tool poses",
-                       {},
-                       false,
-                       false,
-                       write_delmia,
-                       read_delmia};
-  format.to_be_filled = true;
-  return format;
+  return {.name = "delmia",
+          .description = "tag table between tabs, mm and deg",
+          .used_by = "DELMIA Auto ID",
+          .extension = ".txt",
+          .needs = "tool poses",
+          .write = write_delmia,
+          .read = read_delmia,
+          .to_be_filled = true};
 }
 
 }  // namespace posewright::formats

@@ -63,16 +63,14 @@ Exported write_on_base(const PoseSequence& all, const ExportOptions& options) {
 
 PoseFormat samples(const char* name, const char* description,
                    Exported (*write)(const PoseSequence&, const ExportOptions&)) {
-  PoseFormat format;
-  format.name = name;
-  format.description = description;
-  format.used_by = "easy_handeye2";
-  format.extension = ".samples";
-  format.needs = "tool poses";
-  format.options = {"name"};
-  format.write = write;
-  format.to_be_filled = true;
-  return format;
+  return {.name = name,
+          .description = description,
+          .used_by = "easy_handeye2",
+          .extension = ".samples",
+          .needs = "tool poses",
+          .write = write,
+          .options = {"name"},
+          .to_be_filled = true};
 }
 
 }  // namespace

@@ -120,17 +120,15 @@ Exported write_tp(const PoseSequence& sequence, const ExportOptions& options) {
 }  // namespace
 
 PoseFormat fanuc_tp() {
-  return {"fanuc-tp",
-          "FANUC TP listing",
-          "FANUC controllers with ASCII upload, or maketp",
-          ".LS",
-          "six joints (external axes with axes); --coupling",
-          {"name", "speed", "settle", "wait", "digital-output", "digital-input", "tool", "payload", "base", "coupling",
-           "controller"},
-          true,
-          false,
-          write_tp,
-          nullptr};
+  return {.name = "fanuc-tp",
+          .description = "FANUC TP listing",
+          .used_by = "FANUC controllers with ASCII upload, or maketp",
+          .extension = ".LS",
+          .needs = "six joints (external axes with axes); --coupling",
+          .write = write_tp,
+          .options = {"name", "speed", "settle", "wait", "digital-output", "digital-input", "tool", "payload", "base",
+                      "coupling", "controller"},
+          .controller = true};
 }
 
 }  // namespace posewright::formats

@@ -101,18 +101,15 @@ Exported write_hexapod_gcs(const PoseSequence& all, const ExportOptions& options
 }  // namespace
 
 PoseFormat hexapod_gcs() {
-  PoseFormat format = {"hexapod-gcs",
-                       "PI GCS commands of a hexapod",
-                       "PI C-887 and the like, through a host that polls",
-                       ".gcs",
-                       "a six-legged platform; pivot_mm in --controller where it turns",
-                       {"speed", "controller"},
-                       true,
-                       false,
-                       write_hexapod_gcs,
-                       nullptr};
-  format.any_coordinates = true;
-  return format;
+  return {.name = "hexapod-gcs",
+          .description = "PI GCS commands of a hexapod",
+          .used_by = "PI C-887 and the like, through a host that polls",
+          .extension = ".gcs",
+          .needs = "a six-legged platform; pivot_mm in --controller where it turns",
+          .write = write_hexapod_gcs,
+          .options = {"speed", "controller"},
+          .controller = true,
+          .any_coordinates = true};
 }
 
 }  // namespace posewright::formats

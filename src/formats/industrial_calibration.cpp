@@ -2,11 +2,9 @@
 
 #include "formats.hpp"
 #include "posewright/formats/format_text.hpp"
+#include "posewright/support/error.hpp"
 #include "program.hpp"
 #include "yaml_list.hpp"
-
-// Reader: industrial_calibration, examples/data/kinematic_calibration/measurements.yaml. `pose` is what a camera
-// measures (camera to target), so the skeleton holds .nan there: a calibration that finds it left fails.
 
 namespace posewright::formats {
 namespace {
@@ -44,21 +42,53 @@ PoseTable read_industrial_calibration(const std::string& bytes, const std::strin
   });
 }
 
+std::string pose_file(const SequencePose& pose) {
+  Eigen::Quaterniond q(pose.tool_pose->linear());
+  if (q.w() < 0) q.coeffs() *= -1;
+  const Eigen::Vector3d p = pose.tool_pose->translation();
+  return yaml_head(fmt::format("pose {}, predicted (nominal model)", pose.id)) +
+         fmt::format("x: {}\ny: {}\nz: {}\nqx: {}\nqy: {}\nqz: {}\nqw: {}\n", yaml_number(p.x()), yaml_number(p.y()),
+                     yaml_number(p.z()), yaml_number(q.x()), yaml_number(q.y()), yaml_number(q.z()),
+                     yaml_number(q.w()));
+}
+
+Exported write_industrial_hand_eye(const PoseSequence& all, const ExportOptions&) {
+  const PoseSequence sequence = to_measure(all);
+  Exported exported;
+  std::string list = yaml_head("hand-eye data of industrial_calibration") +
+                     "# Take the images yourself: images/N.png with the robot at pose N.\ndata:\n";
+  exported.files.push_back({"cal_data.yaml", ""});
+  for (const SequencePose& pose : sequence.poses) {
+    if (!pose.tool_pose)
+      throw CannotDo(sequence.file + ": industrial-calibration-hand-eye needs tool poses; export the plan.json itself");
+    list += fmt::format("- {{pose: poses/{0}.yaml, image: images/{0}.png}}\n", pose.id);
+    exported.files.push_back({fmt::format("poses/{}.yaml", pose.id), pose_file(pose)});
+  }
+  exported.files.front().bytes = list;
+  exported.notes = list_notes(sequence);
+  exported.notes.push_back("the poses are those of the nominal model: replace them by the controller's values");
+  return exported;
+}
+
 }  // namespace
 
 PoseFormat industrial_calibration() {
-  PoseFormat format = {"industrial-calibration",
-                       "measurements, poses to be filled in",
-                       "industrial_calibration",
-                       ".yaml",
-                       "",
-                       {},
-                       false,
-                       false,
-                       write_industrial_calibration,
-                       read_industrial_calibration};
-  format.to_be_filled = true;
-  return format;
+  return {.name = "industrial-calibration",
+          .description = "measurements, poses to be filled in",
+          .used_by = "industrial_calibration",
+          .extension = ".yaml",
+          .write = write_industrial_calibration,
+          .read = read_industrial_calibration,
+          .to_be_filled = true};
+}
+
+PoseFormat industrial_hand_eye() {
+  return {.name = "industrial-calibration-hand-eye",
+          .description = "cal_data.yaml and a file a pose",
+          .used_by = "industrial_calibration, hand-eye",
+          .needs = "tool poses",
+          .write = write_industrial_hand_eye,
+          .several_files = true};
 }
 
 }  // namespace posewright::formats

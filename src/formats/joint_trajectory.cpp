@@ -126,18 +126,14 @@ PoseTable read_joint_trajectory(const std::string& bytes, const std::string& fil
 }  // namespace
 
 PoseFormat joint_trajectory() {
-  PoseFormat format = {"joint-trajectory",
-                       "trajectory_msgs/JointTrajectory with holds",
-                       "ROS 2 trajectory controllers",
-                       ".yaml",
-                       "",
-                       {"speed", "settle", "wait"},
-                       false,
-                       false,
-                       write_joint_trajectory,
-                       read_joint_trajectory};
-  format.timed = true;
-  return format;
+  return {.name = "joint-trajectory",
+          .description = "trajectory_msgs/JointTrajectory with holds",
+          .used_by = "ROS 2 trajectory controllers",
+          .extension = ".yaml",
+          .write = write_joint_trajectory,
+          .read = read_joint_trajectory,
+          .options = {"speed", "settle", "wait"},
+          .timed = true};
 }
 
 }  // namespace posewright::formats

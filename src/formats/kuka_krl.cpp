@@ -80,17 +80,16 @@ Exported write_krl(const PoseSequence& sequence, const ExportOptions& options) {
 }  // namespace
 
 PoseFormat kuka_krl() {
-  return {
-      "kuka-krl",
-      "KUKA KRL program",
-      "KUKA KR C controllers",
-      ".src",
-      "six joints (external axes with axes)",
-      {"name", "speed", "settle", "wait", "digital-output", "digital-input", "tool", "base", "coupling", "controller"},
-      true,
-      true,
-      write_krl,
-      nullptr};
+  return {.name = "kuka-krl",
+          .description = "KUKA KRL program",
+          .used_by = "KUKA KR C controllers",
+          .extension = ".src",
+          .needs = "six joints (external axes with axes)",
+          .write = write_krl,
+          .options = {"name", "speed", "settle", "wait", "digital-output", "digital-input", "tool", "base", "coupling",
+                      "controller"},
+          .controller = true,
+          .several_files = true};
 }
 
 }  // namespace posewright::formats

@@ -36,8 +36,13 @@ PoseTable read_moveit(const std::string& bytes, const std::string& file) {
 }  // namespace
 
 PoseFormat moveit() {
-  return {"moveit", "joint states", "MoveIt Calibration", ".yaml",     "",  {},
-          false,    false,          write_moveit,         read_moveit, true};
+  return {.name = "moveit",
+          .description = "joint states",
+          .used_by = "MoveIt Calibration",
+          .extension = ".yaml",
+          .write = write_moveit,
+          .read = read_moveit,
+          .ending_matters = true};
 }
 
 }  // namespace posewright::formats

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <sstream>
 
 #include "formats.hpp"
@@ -83,18 +82,13 @@ PoseTable read_csv_table(const std::string& bytes, const std::string& file) {
 namespace formats {
 
 PoseFormat plain_csv() {
-  PoseFormat format = {"csv",
-                       "names and units in a header, SI",
-                       "anything; poses.csv of a plan",
-                       ".csv",
-                       "",
-                       {},
-                       false,
-                       false,
-                       write_plain_csv,
-                       read_csv_table};
-  format.any_coordinates = true;
-  return format;
+  return {.name = "csv",
+          .description = "names and units in a header, SI",
+          .used_by = "anything; poses.csv of a plan",
+          .extension = ".csv",
+          .write = write_plain_csv,
+          .read = read_csv_table,
+          .any_coordinates = true};
 }
 
 }  // namespace formats

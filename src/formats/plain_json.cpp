@@ -29,18 +29,13 @@ PoseTable read_plain_json(const std::string& bytes, const std::string& file) {
 }  // namespace
 
 PoseFormat plain_json() {
-  PoseFormat format = {"json",
-                       "names, units and values, SI",
-                       "anything; plan.json and route.json are read too",
-                       ".json",
-                       "",
-                       {},
-                       false,
-                       false,
-                       write_plain_json,
-                       read_plain_json};
-  format.any_coordinates = true;
-  return format;
+  return {.name = "json",
+          .description = "names, units and values, SI",
+          .used_by = "anything; plan.json and route.json are read too",
+          .extension = ".json",
+          .write = write_plain_json,
+          .read = read_plain_json,
+          .any_coordinates = true};
 }
 
 }  // namespace posewright::formats

@@ -48,16 +48,12 @@ PoseTable read_robodk_csv(const std::string& bytes, const std::string& file) {
 }  // namespace
 
 PoseFormat robodk_csv() {
-  return {"robodk-csv",
-          "joint values, deg (columns are a guess)",
-          "RoboDK",
-          ".csv",
-          "",
-          {},
-          false,
-          false,
-          write_robodk_csv,
-          read_robodk_csv};
+  return {.name = "robodk-csv",
+          .description = "joint values, deg (columns are a guess)",
+          .used_by = "RoboDK",
+          .extension = ".csv",
+          .write = write_robodk_csv,
+          .read = read_robodk_csv};
 }
 
 }  // namespace posewright::formats

@@ -50,17 +50,13 @@ PoseTable read_robot_calibration(const std::string& bytes, const std::string& fi
 }  // namespace
 
 PoseFormat robot_calibration() {
-  return {"robot-calibration",
-          "list of joints and positions",
-          "robot_calibration (ROS 2)",
-          ".yaml",
-          "",
-          {},
-          false,
-          false,
-          write_robot_calibration,
-          read_robot_calibration,
-          true};
+  return {.name = "robot-calibration",
+          .description = "list of joints and positions",
+          .used_by = "robot_calibration (ROS 2)",
+          .extension = ".yaml",
+          .write = write_robot_calibration,
+          .read = read_robot_calibration,
+          .ending_matters = true};
 }
 
 }  // namespace posewright::formats

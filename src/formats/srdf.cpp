@@ -82,7 +82,13 @@ PoseTable read_srdf(const std::string& bytes, const std::string& file) {
 }  // namespace
 
 PoseFormat srdf() {
-  return {"srdf", "group states", "MoveIt", ".srdf", "", {"name", "group"}, false, false, write_srdf, read_srdf};
+  return {.name = "srdf",
+          .description = "group states",
+          .used_by = "MoveIt",
+          .extension = ".srdf",
+          .write = write_srdf,
+          .read = read_srdf,
+          .options = {"name", "group"}};
 }
 
 }  // namespace posewright::formats

@@ -110,16 +110,15 @@ Exported write_val3(const PoseSequence& sequence, const ExportOptions& options) 
 }  // namespace
 
 PoseFormat staubli_val3() {
-  return {"staubli-val3",
-          "Staubli VAL 3 application",
-          "Staubli CS8, CS9",
-          "",
-          "six turning joints",
-          {"name", "speed", "settle", "wait", "digital-output", "digital-input", "coupling", "controller"},
-          true,
-          true,
-          write_val3,
-          nullptr};
+  return {.name = "staubli-val3",
+          .description = "Staubli VAL 3 application",
+          .used_by = "Staubli CS8, CS9",
+          .extension = "",
+          .needs = "six turning joints",
+          .write = write_val3,
+          .options = {"name", "speed", "settle", "wait", "digital-output", "digital-input", "coupling", "controller"},
+          .controller = true,
+          .several_files = true};
 }
 
 }  // namespace posewright::formats

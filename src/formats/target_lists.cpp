@@ -122,10 +122,14 @@ Exported write_powerinspect(const PoseSequence& all, const ExportOptions& option
 
 PoseFormat target_list(const char* name, const char* description, const char* used_by, const char* extension,
                        Exported (*write)(const PoseSequence&, const ExportOptions&)) {
-  PoseFormat format = {name,        description, used_by, extension, "targets with predicted positions",
-                       {"station"}, false,       false,   write,     nullptr};
-  format.any_coordinates = true;
-  return format;
+  return {.name = name,
+          .description = description,
+          .used_by = used_by,
+          .extension = extension,
+          .needs = "targets with predicted positions",
+          .write = write,
+          .options = {"station"},
+          .any_coordinates = true};
 }
 
 }  // namespace

@@ -107,16 +107,14 @@ Exported write_urscript(const PoseSequence& sequence, const ExportOptions& optio
 }  // namespace
 
 PoseFormat urscript() {
-  return {"urscript",
-          "URScript program",
-          "Universal Robots",
-          ".script",
-          "six turning joints",
-          {"name", "speed", "settle", "wait", "digital-output", "digital-input", "payload", "controller"},
-          true,
-          false,
-          write_urscript,
-          nullptr};
+  return {.name = "urscript",
+          .description = "URScript program",
+          .used_by = "Universal Robots",
+          .extension = ".script",
+          .needs = "six turning joints",
+          .write = write_urscript,
+          .options = {"name", "speed", "settle", "wait", "digital-output", "digital-input", "payload", "controller"},
+          .controller = true};
 }
 
 }  // namespace posewright::formats

@@ -4,7 +4,6 @@
 
 #include <functional>
 #include <string>
-#include <vector>
 
 #include "posewright/controller/yaml_document.hpp"
 #include "posewright/formats/pose_formats.hpp"

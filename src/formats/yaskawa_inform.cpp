@@ -91,16 +91,15 @@ Exported write_inform(const PoseSequence& sequence, const ExportOptions& options
 }  // namespace
 
 PoseFormat yaskawa_inform() {
-  return {"yaskawa-inform",
-          "Yaskawa INFORM job",
-          "Yaskawa NX100 and later",
-          ".JBI",
-          "six turning joints; --controller with sign, zero_deg, pulses_per_degree; --coupling",
-          {"name", "speed", "settle", "wait", "digital-output", "digital-input", "tool", "coupling", "controller"},
-          true,
-          false,
-          write_inform,
-          nullptr};
+  return {.name = "yaskawa-inform",
+          .description = "Yaskawa INFORM job",
+          .used_by = "Yaskawa NX100 and later",
+          .extension = ".JBI",
+          .needs = "six turning joints; --controller with sign, zero_deg, pulses_per_degree; --coupling",
+          .write = write_inform,
+          .options = {"name", "speed", "settle", "wait", "digital-output", "digital-input", "tool", "coupling",
+                      "controller"},
+          .controller = true};
 }
 
 }  // namespace posewright::formats

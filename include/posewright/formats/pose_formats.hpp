@@ -1,7 +1,5 @@
 #pragma once
 
-#include <array>
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -66,13 +64,13 @@ struct PoseTable {
 
 /// One row a format.
 struct PoseFormat {
-  std::string name, description, used_by, extension;
-  std::string needs;                 ///< beside six or any joints; empty: nothing
-  std::vector<std::string> options;  ///< of the command line that the writer reads
-  bool controller = false;           ///< a program: syntax checked, not run on a controller
-  bool several_files = false;
+  std::string name{}, description{}, used_by{}, extension{};
+  std::string needs{};  ///< beside six or any joints; empty: nothing
   Exported (*write)(const PoseSequence& sequence, const ExportOptions& options) = nullptr;
   PoseTable (*read)(const std::string& bytes, const std::string& file) = nullptr;  ///< null: it is not read back
+  std::vector<std::string> options{};  ///< of the command line that the writer reads
+  bool controller = false;             ///< a program: syntax checked, not run on a controller
+  bool several_files = false;
   bool ending_matters = false;   ///< whoever reads it goes by the ending of the file's name
   bool to_be_filled = false;     ///< users put what they measured into the file
   bool any_coordinates = false;  ///< has a place for a platform's coordinates and for pairs of configurations

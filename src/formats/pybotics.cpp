@@ -1,12 +1,14 @@
 #include <fmt/format.h>
 
+#include <bit>
+#include <cstring>
+
 #include "formats.hpp"
 #include "number_rows.hpp"
+#include "posewright/blocks/read_blocks.hpp"
 #include "posewright/formats/format_text.hpp"
 #include "posewright/support/error.hpp"
 #include "program.hpp"
-
-// Form: pybotics tests/resources/ur10-joints-poses.csv: joints in degrees, then the pose, 4 x 4 row by row, in mm.
 
 namespace posewright::formats {
 namespace {
@@ -48,21 +50,60 @@ PoseTable read_pybotics_csv(const std::string& bytes, const std::string& file) {
   return table;
 }
 
+static_assert(std::endian::native == std::endian::little, "numbers are written as they lie in memory");
+
+Exported write_pybotics_npy(const PoseSequence& all, const ExportOptions&) {
+  const PoseSequence sequence = to_measure(all);
+  std::string header = fmt::format("{{'descr': '<f8', 'fortran_order': False, 'shape': ({}, {}), }}",
+                                   sequence.poses.size(), sequence.names.size());
+  // Magic, version and length take 10 bytes; the data begins at a multiple of 64.
+  header.append(63 - (10 + header.size()) % 64, ' ');
+  header += '\n';
+  std::string bytes("\x93NUMPY\x01\x00", 8);
+  bytes += char(header.size() & 0xFF);
+  bytes += char(header.size() >> 8);
+  bytes += header;
+  for (const SequencePose& pose : sequence.poses)
+    for (const double value : pose.values) {
+      char raw[sizeof value];
+      std::memcpy(raw, &value, sizeof value);
+      bytes.append(raw, sizeof value);
+    }
+  return one_file("calposes.npy", bytes, list_notes(sequence));
+}
+
+PoseTable read_pybotics_npy(const std::string& bytes, const std::string& file) {
+  const BlockArray array = parse_npy(bytes, 1, {file, 0});
+  PoseTable table;
+  for (std::size_t i = 0; i < array.count(); ++i) {
+    PoseRow row;
+    const double* values = array.row(i, 0);
+    for (int j = 0; j < array.columns(); ++j) row.cells.emplace_back(values[j] == 0 ? 0.0 : values[j]);
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
 }  // namespace
 
 PoseFormat pybotics_csv() {
-  PoseFormat format = {"pybotics-csv",
-                       "joint values and tool poses, deg and mm",
-                       "pybotics",
-                       ".csv",
-                       "tool poses",
-                       {},
-                       false,
-                       false,
-                       write_pybotics_csv,
-                       read_pybotics_csv};
-  format.to_be_filled = true;
-  return format;
+  return {.name = "pybotics-csv",
+          .description = "joint values and tool poses, deg and mm",
+          .used_by = "pybotics",
+          .extension = ".csv",
+          .needs = "tool poses",
+          .write = write_pybotics_csv,
+          .read = read_pybotics_csv,
+          .to_be_filled = true};
+}
+
+PoseFormat pybotics_npy() {
+  return {.name = "pybotics-npy",
+          .description = "array of joint values, rad and m",
+          .used_by = "pybotics, NumPy",
+          .extension = ".npy",
+          .write = write_pybotics_npy,
+          .read = read_pybotics_npy};
 }
 
 }  // namespace posewright::formats

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "frames.hpp"
+#include "language.hpp"
 #include "posewright/programs/program_document.hpp"
 
 namespace posewright::programs {

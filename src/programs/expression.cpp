@@ -357,4 +357,20 @@ void TokenCursor::skip_to(std::string_view symbols, bool line_ends) {
 
 Expression read_expression(TokenCursor& cursor, const ExpressionRules& rules) { return Reader(cursor, rules).sum(0); }
 
+TakenName take_name(TokenCursor& cursor, char open, std::string_view close, bool in_line) {
+  TakenName taken{std::string(cursor.text()), cursor.now().line};
+  cursor.skip();
+  while (cursor.sees(open) || cursor.sees('.')) {
+    if (cursor.take('.')) {
+      taken.component = true;
+      cursor.skip();
+    } else {
+      if (cursor.ahead(1).kind == Token::Kind::number) taken.index = long(std::min(cursor.ahead(1).value, 1e6));
+      cursor.skip_to(close, in_line);
+      cursor.take(close.front());
+    }
+  }
+  return taken;
+}
+
 }  // namespace posewright::programs

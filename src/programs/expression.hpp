@@ -67,6 +67,17 @@ class TokenCursor {
   const std::vector<Token>* tokens_;
 };
 
+/// A name with the indices and parts behind it: j1, XP1[3], p1.trans.z.
+struct TakenName {
+  std::string name;
+  int line = 0;
+  long index = -1;  ///< the last one that begins with a number
+  bool component = false;
+};
+/// @param open, close  around an index; `close` begins with what ends it, other symbols end it where that lacks
+/// @param in_line      an index ends with its line
+TakenName take_name(TokenCursor& cursor, char open, std::string_view close, bool in_line);
+
 /// An expression of a program, as far as points need it.
 struct Expression {
   enum class Kind {

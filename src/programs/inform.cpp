@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 
 #include "pose_form.hpp"
 #include "posewright/support/trimmed.hpp"

@@ -41,21 +41,11 @@ const Grammar& krl_grammar() {
                                 true,
                                 1,
                                 is_straight_krl,
-                                {{"PTP"},
-                                 {"SPTP"},
-                                 {"LIN"},
-                                 {"SLIN"},
-                                 {"SPL"},
-                                 {"CIRC", Role::pose, 0, 2},
-                                 {"SCIRC", Role::pose, 0, 2},
-                                 {"PTP_REL", Role::step},
-                                 {"SPTP_REL", Role::step},
-                                 {"LIN_REL", Role::step},
-                                 {"SLIN_REL", Role::step},
-                                 {"SPL_REL", Role::step},
-                                 {"CIRC_REL", Role::step, 0, 2},
-                                 {"SCIRC_REL", Role::step, 0, 2},
-                                 {"ASYPTP", Role::other, 0, 1, external}},
+                                {{{"PTP", "SPTP", "LIN", "SLIN", "SPL"}},
+                                 {{"CIRC", "SCIRC"}, Role::pose, 0, 2},
+                                 {{"PTP_REL", "SPTP_REL", "LIN_REL", "SLIN_REL", "SPL_REL"}, Role::step},
+                                 {{"CIRC_REL", "SCIRC_REL"}, Role::step, 0, 2},
+                                 {{"ASYPTP"}, Role::other, 0, 1, external}},
                                 {},
                                 {"$POS_ACT", "$AXIS_ACT", "$AXIS_RET", "$AXIS_FOR", "$POS_RET", "$POS_FOR"},
                                 krl_point};
@@ -104,29 +94,12 @@ class Krl {
   /// XP1={…}, XP1[3]={…}, XP1.A1=…, XP1=XP2; the cursor is left where it was if it is none.
   bool assignment() {
     TokenCursor ahead = cursor_;
-    const std::string name(ahead.text());
-    const int line = ahead.now().line;
-    long index = -1;
-    const Expression left = [&] {
-      Expression one;
-      one.component = false;
-      ahead.skip();
-      while (ahead.sees('[') || ahead.sees('.')) {
-        one.component = one.component || ahead.sees('.');
-        if (ahead.take('.')) ahead.skip();
-        else {
-          if (ahead.ahead(1).kind == Token::Kind::number) index = long(std::min(ahead.ahead(1).value, 1e6));
-          ahead.skip_to("]", true);
-          ahead.take(']');
-        }
-      }
-      return one;
-    }();
+    const auto [name, line, index, component] = take_name(ahead, '[', "]", true);
     if (!ahead.take('=') || ahead.sees('=')) return false;
     const Expression value = read_expression(ahead, krl_grammar().expressions);
     cursor_ = ahead;
     if (frame(upper(name), index, value)) return true;
-    if (left.component || !found_.define(name, value, line)) {
+    if (component || !found_.define(name, value, line)) {
       found_.change(name, line, "=");
       found_.pass("=", {value}, line, Role::operand);
     }

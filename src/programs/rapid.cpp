@@ -48,59 +48,26 @@ bool is_straight(const std::string& word) {
 
 const Grammar& rapid_grammar() {
   static const char* external = "moves external axes alone";
-  static const Grammar rules = {{'[', '{', false, false},
-                                true,
-                                1,
-                                is_straight,
-                                {{"MOVEABSJ"},
-                                 {"MOVEJ"},
-                                 {"MOVEL"},
-                                 {"MOVEJDO"},
-                                 {"MOVELDO"},
-                                 {"MOVEJAO"},
-                                 {"MOVELAO"},
-                                 {"MOVEJGO"},
-                                 {"MOVELGO"},
-                                 {"MOVEJSYNC"},
-                                 {"MOVELSYNC"},
-                                 {"TRIGGJ"},
-                                 {"TRIGGL"},
-                                 {"TRIGGABSJ"},
-                                 {"TRIGGJIOS"},
-                                 {"TRIGGLIOS"},
-                                 {"ARCL"},
-                                 {"ARCLSTART"},
-                                 {"ARCLEND"},
-                                 {"ARCMOVEL"},
-                                 {"ARCMOVEJ"},
-                                 {"ARCMOVEABSJ"},
-                                 {"SPOTL"},
-                                 {"SPOTJ"},
-                                 {"SPOTML"},
-                                 {"SPOTMJ"},
-                                 {"PAINTL"},
-                                 {"DISPL"},
-                                 {"GLUEL"},
-                                 {"CAPL"},
-                                 {"MOVEC", Role::pose, 0, 2},
-                                 {"MOVECDO", Role::pose, 0, 2},
-                                 {"MOVECAO", Role::pose, 0, 2},
-                                 {"MOVECGO", Role::pose, 0, 2},
-                                 {"MOVECSYNC", Role::pose, 0, 2},
-                                 {"TRIGGC", Role::pose, 0, 2},
-                                 {"ARCC", Role::pose, 0, 2},
-                                 {"ARCCSTART", Role::pose, 0, 2},
-                                 {"ARCCEND", Role::pose, 0, 2},
-                                 {"ARCMOVEC", Role::pose, 0, 2},
-                                 {"PAINTC", Role::pose, 0, 2},
-                                 {"DISPC", Role::pose, 0, 2},
-                                 {"CAPC", Role::pose, 0, 2},
-                                 {"SEARCHL", Role::pose, 2, 1},
-                                 {"SEARCHC", Role::pose, 2, 2},
-                                 {"MOVEEXTJ", Role::other, 0, 1, external}},
-                                {"OFFS", "RELTOOL"},
-                                {"CROBT", "CJOINTT"},
-                                rapid_point};
+  static const Grammar rules = {
+      {'[', '{', false, false},
+      true,
+      1,
+      is_straight,
+      {{{"MOVEABSJ", "MOVEJ",     "MOVEL",     "MOVEJDO",  "MOVELDO",  "MOVEJAO",     "MOVELAO",   "MOVEJGO",
+         "MOVELGO",  "MOVEJSYNC", "MOVELSYNC", "TRIGGJ",   "TRIGGL",   "TRIGGABSJ",   "TRIGGJIOS", "TRIGGLIOS",
+         "ARCL",     "ARCLSTART", "ARCLEND",   "ARCMOVEL", "ARCMOVEJ", "ARCMOVEABSJ", "SPOTL",     "SPOTJ",
+         "SPOTML",   "SPOTMJ",    "PAINTL",    "DISPL",    "GLUEL",    "CAPL"}},
+       {{"MOVEC", "MOVECDO", "MOVECAO", "MOVECGO", "MOVECSYNC", "TRIGGC", "ARCC", "ARCCSTART", "ARCCEND", "ARCMOVEC",
+         "PAINTC", "DISPC", "CAPC"},
+        Role::pose,
+        0,
+        2},
+       {{"SEARCHL"}, Role::pose, 2, 1},
+       {{"SEARCHC"}, Role::pose, 2, 2},
+       {{"MOVEEXTJ"}, Role::other, 0, 1, external}},
+      {"OFFS", "RELTOOL"},
+      {"CROBT", "CJOINTT"},
+      rapid_point};
   return rules;
 }
 
@@ -205,28 +172,13 @@ class Rapid {
 
   /// p1.trans.z := …, p2 := p1, and j1:=[…] of a variable.
   void assignment() {
-    const Expression left = [&] {
-      Expression one;
-      one.word = cursor_.text();
-      one.line = cursor_.now().line;
-      cursor_.skip();
-      while (cursor_.sees('{') || cursor_.sees('.')) {
-        if (cursor_.take('.')) {
-          one.component = true;
-          cursor_.skip();
-        } else {
-          cursor_.skip_to("};", false);
-          cursor_.take('}');
-        }
-      }
-      return one;
-    }();
+    const TakenName left = take_name(cursor_, '{', "};", false);
     if (!cursor_.sees(':') || !cursor_.ahead(1).is('=', cursor_.source())) return;
     cursor_.skip();
     cursor_.skip();
     const Expression value = read_expression(cursor_, rapid_grammar().expressions);
-    if (left.component || !found_.define(left.word, value, left.line)) {
-      found_.change(left.word, left.line, ":=");
+    if (left.component || !found_.define(left.name, value, left.line)) {
+      found_.change(left.name, left.line, ":=");
       found_.pass(":=", {value}, left.line, Role::operand);
     }
   }

@@ -8,7 +8,7 @@ namespace {
 
 using Kind = Expression::Kind;
 
-bool among(const std::vector<std::string_view>& words, const std::string& word) {
+bool among(const std::vector<std::string_view>& words, std::string_view word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
@@ -16,8 +16,7 @@ bool among(const std::vector<std::string_view>& words, const std::string& word) 
 
 const Motion* Collector::motion(std::string_view word) const {
   const std::string wanted = grammar_.capitals ? upper(word) : std::string(word);
-  const auto at =
-      std::find_if(grammar_.motions.begin(), grammar_.motions.end(), [&](const Motion& m) { return m.word == wanted; });
+  const auto at = std::ranges::find_if(grammar_.motions, [&](const Motion& m) { return among(m.words, wanted); });
   return at == grammar_.motions.end() ? nullptr : &*at;
 }
 

@@ -103,9 +103,9 @@ struct Source {
   const std::vector<std::string>& axes;  ///< what the language calls them, in its order, where points do not name them
 };
 
-/// An instruction that moves: which of its arguments are points.
+/// Instructions that move: which of their arguments are points.
 struct Motion {
-  std::string_view word;  ///< in capitals where the language does not tell them apart
+  std::vector<std::string_view> words;  ///< in capitals where the language does not tell them apart
   Role role = Role::pose;
   std::size_t first = 0, count = 1;
   const char* why = "";

@@ -2,7 +2,6 @@
 // configuration shoulder, elbow, wrist; frames and tools are there, too. The programs beside it (.pgx) move to them.
 
 #include <algorithm>
-#include <cstdlib>
 
 #include "pose_form.hpp"
 #include "reading.hpp"
@@ -18,7 +17,7 @@ const Grammar& val3_grammar() {
                                 false,
                                 0,
                                 [](const std::string& word) { return word == "MOVEL"; },
-                                {{"movej"}, {"movel"}, {"movec", Role::pose, 0, 2}},
+                                {{{"movej", "movel"}}, {{"movec"}, Role::pose, 0, 2}},
                                 {"appro", "compose"},
                                 {"herej", "here"},
                                 [](const Expression&, const Source&) { return std::optional<FoundPoint>(); }};
@@ -241,27 +240,13 @@ class Val3 {
 
   /// p.trsf.z=…, j[n]=herej(): what follows is seen on its own.
   void assignment(TokenCursor& cursor) {
-    const std::string name(cursor.text());
-    const int line = cursor.now().line;
     TokenCursor ahead = cursor;
-    read_name(ahead);
+    const TakenName left = take_name(ahead, '[', "]", true);
     if (ahead.sees('=') && !ahead.ahead(1).is('=', ahead.source())) {
-      found_.change(name, line, "=");
+      found_.change(left.name, left.line, "=");
       cursor = ahead;
     }
     cursor.skip();
-  }
-
-  static void read_name(TokenCursor& cursor) {
-    cursor.skip();
-    while (cursor.sees('[') || cursor.sees('.')) {
-      if (cursor.take('.')) {
-        cursor.skip();
-      } else {
-        cursor.skip_to("]", true);
-        cursor.take(']');
-      }
-    }
   }
 
   const Source& source_;

@@ -103,22 +103,16 @@ void bind_compensation(py::module_& m) {
       .def_property_readonly(
           "compensated",
           [](const C& c) {
-            std::vector<bool> reached;
-            for (const auto& s : c.value.result.lists.front().solutions)
-              reached.push_back(s.outcome == CommandSolver::Outcome::reached);
-            return reached;
+            return of_each(c.value.result.lists.front().solutions, [](const CommandSolver::Solution& s) {
+              return s.outcome == CommandSolver::Outcome::reached;
+            });
           },
           "of each pose")
       .def_property_readonly("before", errors(&CommandSolver::Solution::before),
                              "N × 2: predicted error of the tip (m, rad), commanded as listed")
       .def_property_readonly("after", errors(&CommandSolver::Solution::after), "N × 2: the same, commanded so")
       .def_property_readonly(
-          "failures",
-          [](const C& c) {
-            std::vector<std::string> texts;
-            for (const NotCompensated& n : c.value.result.failures) texts.push_back(n.text());
-            return texts;
-          },
+          "failures", [](const C& c) { return of_each(c.value.result.failures, &NotCompensated::text); },
           "poses that cannot be commanded, and why")
       .def_property_readonly(
           "text",

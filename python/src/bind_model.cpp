@@ -1,7 +1,6 @@
 #include <pybind11/stl.h>
 
 #include "arguments.hpp"
-#include "arrays.hpp"
 #include "bindings.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/workspace/candidates.hpp"

@@ -70,17 +70,6 @@ MadeNext next_poses_of(const Shared& problem, const py::object& data, const py::
                       });
 }
 
-py::array_t<double> next_configurations(const MadeNext& made) {
-  std::vector<std::vector<double>> rows;
-  std::size_t width = 0;
-  for (const PlannedPose& pose : made.value.next.poses) {
-    rows.emplace_back();
-    for (const NamedValue& v : pose.configuration) rows.back().push_back(v.value);
-    width = rows.back().size();
-  }
-  return array_of(rows, width);
-}
-
 }  // namespace
 
 void bind_next(py::module_& m) {
@@ -92,7 +81,9 @@ void bind_next(py::module_& m) {
     };
   };
   bind_made<N>(m, "NextPoses", "Which poses to measure next, and whether to go on; docs/next.md.")
-      .def_property_readonly("configurations", &next_configurations, "N × n, SI, without load cases and stations")
+      .def_property_readonly(
+          "configurations", [](const N& n) { return pose_configurations(n.value.next.poses); },
+          "N × n, SI, without load cases and stations")
       .def_property_readonly("poses", [](const N& n) { return n.value.next.poses; })
       .def_property_readonly(
           "stop",
@@ -111,9 +102,9 @@ void bind_next(py::module_& m) {
       .def_property_readonly(
           "estimates",
           [](const N& n) {
-            py::dict values;
-            for (const EstimatedValue& e : n.value.next.estimates) values[py::str(e.value.name)] = e.value.value;
-            return values;
+            return dict_of(
+                n.value.next.estimates, [](const EstimatedValue& e) { return e.value.name; },
+                [](const EstimatedValue& e) { return e.value.value; });
           },
           "{parameter: value} of the fit so far, SI")
       .def_property_readonly("notes", [](const N& n) { return n.value.next.notes; })

@@ -1,44 +1,18 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include <cmath>
 #include <limits>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "posewright/results/plan.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/support/table.hpp"
 
 namespace posewright::python {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-std::vector<double> values_of(const std::vector<NamedValue>& entries) {
-  std::vector<double> values;
-  for (const NamedValue& v : entries) values.push_back(v.value);
-  return values;
-}
-
-template <class Field>
-std::vector<std::string> texts(const std::vector<NamedValue>& entries, Field field) {
-  std::vector<std::string> result;
-  for (const NamedValue& v : entries) result.push_back(v.*field);
-  return result;
-}
-
-py::array_t<double> configurations(const Plan& plan) {
-  std::vector<std::vector<double>> rows;
-  for (const PlannedPose& pose : plan.poses) rows.push_back(values_of(pose.configuration));
-  return array_of(rows, rows.empty() ? 0 : rows.front().size());
-}
-
-template <class Value>
-auto of_each(const std::vector<PlannedPose>& poses, Value value) {
-  std::vector<decltype(value(poses.front()))> result;
-  for (const PlannedPose& pose : poses) result.push_back(value(pose));
-  return result;
-}
 
 std::optional<std::string> text_or_none(const std::string& text) {
   return text.empty() ? std::nullopt : std::optional(text);
@@ -87,16 +61,12 @@ void bind_pose(py::module_& m) {
                     "zero-based index of the candidate or block; None where it was found between them")
       .def_readonly("measured", &P::measured, "was there before: not to be measured again")
       .def_readonly("fixed", &P::fixed, "was in the plan before the search, still to be measured")
-      .def_property_readonly("configuration", [](const P& p) { return array_of(values_of(p.configuration)); })
-      .def_property_readonly("names", [](const P& p) { return texts(p.configuration, &NamedValue::name); })
-      .def_property_readonly("units", [](const P& p) { return texts(p.configuration, &NamedValue::unit); })
+      .def_property_readonly("configuration",
+                             [](const P& p) { return array_of(of_each(p.configuration, &NamedValue::value)); })
+      .def_property_readonly("names", [](const P& p) { return of_each(p.configuration, &NamedValue::name); })
+      .def_property_readonly("units", [](const P& p) { return of_each(p.configuration, &NamedValue::unit); })
       .def_property_readonly(
-          "actuators",
-          [](const P& p) {
-            py::dict result;
-            for (const NamedValue& v : p.actuators) result[py::str(v.name)] = v.value;
-            return result;
-          },
+          "actuators", [](const P& p) { return dict_of(p.actuators, &NamedValue::name, &NamedValue::value); },
           "of a parallel robot, by name")
       .def_property_readonly("tool_pose", &tool_pose, "4 × 4, nominal, in the measurement frame; None for bare blocks")
       .def_readonly("contribution", &P::contribution, "share of all information")
@@ -127,15 +97,13 @@ void bind_certificate(py::module_& m) {
       .def_readonly("repeats", &C::repeats, "what the bound allows: forbid, allow or a number")
       .def_readonly("workspace", &C::workspace, "the same over the whole workspace, or None")
       .def("__repr__", [](const C& c) {
-        return py::str("<Certificate: at least {:.2f} % of the best of {} candidates>")
-            .format(std::floor(1e4 * c.efficiency) / 100, c.count);
+        return py::str("<Certificate: at least {} of the best of {} candidates>")
+            .format(percent(c.efficiency), c.count);
       });
 }
 
 py::array_t<double> sigma(const Plan& plan) {
-  std::vector<double> values;
-  for (const PlannedParameter& p : plan.parameters) values.push_back(p.sigma.value_or(nan));
-  return array_of(values);
+  return array_of(of_each(plan.parameters, [](const PlannedParameter& p) { return p.sigma.value_or(nan); }));
 }
 
 void save(const Plan& plan, const py::object& path, bool overwrite) {
@@ -148,7 +116,7 @@ void bind_plan_class(py::module_& m) {
   const auto each = [](auto value) { return [value](const Plan& p) { return of_each(p.poses, value); }; };
   const auto name_of = [](auto field) {
     return [field](const Plan& p) {
-      return p.poses.empty() ? std::vector<std::string>() : texts(p.poses.front().configuration, field);
+      return p.poses.empty() ? std::vector<std::string>() : of_each(p.poses.front().configuration, field);
     };
   };
   py::class_<Plan> bound(m, "Plan", py::dynamic_attr(),
@@ -160,14 +128,15 @@ void bind_plan_class(py::module_& m) {
                                   return text_or_none(label_of(p.choices, key.name));
                                 }));
   bound.def_readonly("poses", &Plan::poses)
-      .def_property_readonly("configurations", &configurations, "N × n, SI, without load cases and stations")
+      .def_property_readonly(
+          "configurations", [](const Plan& p) { return pose_configurations(p.poses); },
+          "N × n, SI, without load cases and stations")
       .def_property_readonly("names", name_of(&NamedValue::name), "of the columns of configurations")
       .def_property_readonly("units", name_of(&NamedValue::unit), "of the columns of configurations")
-      .def_property_readonly("candidates", each([](const PlannedPose& p) { return p.candidate; }),
+      .def_property_readonly("candidates", each(&PlannedPose::candidate),
                              "zero-based index of each pose's candidate or block; None: found between them")
       .def_property_readonly(
-          "contributions",
-          [](const Plan& p) { return array_of(of_each(p.poses, [](const auto& q) { return q.contribution; })); },
+          "contributions", [](const Plan& p) { return array_of(of_each(p.poses, &PlannedPose::contribution)); },
           "share of all information of each pose")
       .def_readonly("parameters", &Plan::parameters, "interest first, then nuisance, then dropped ones")
       .def_property_readonly("sigma", &sigma, "predicted 1σ of each of the parameters, SI; nan where dropped")

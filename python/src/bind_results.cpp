@@ -11,20 +11,6 @@
 namespace posewright::python {
 namespace {
 
-using Names = std::vector<std::string>;
-
-Names names_of(const std::vector<Parameter>& parameters) {
-  Names names;
-  for (const Parameter& p : parameters) names.push_back(p.name);
-  return names;
-}
-
-std::vector<PlannedParameter> planned_parameters(const std::vector<Parameter>& parameters) {
-  std::vector<PlannedParameter> result;
-  for (const Parameter& p : parameters) result.push_back({p, "", std::nullopt, ""});
-  return result;
-}
-
 /// A dependency together with the names of its parameters.
 struct NamedDependency {
   Dependency dependency;
@@ -32,18 +18,7 @@ struct NamedDependency {
 };
 
 std::vector<NamedDependency> named(const std::vector<Dependency>& found, const std::vector<Parameter>& parameters) {
-  std::vector<NamedDependency> result;
-  for (const Dependency& d : found) result.push_back({d, parameters});
-  return result;
-}
-
-py::array_t<double> configurations(const std::vector<PlannedPose>& poses) {
-  std::vector<std::vector<double>> rows;
-  for (const PlannedPose& pose : poses) {
-    rows.emplace_back();
-    for (const NamedValue& v : pose.configuration) rows.back().push_back(v.value);
-  }
-  return array_of(rows, rows.empty() ? 0 : rows.front().size());
+  return of_each(found, [&](const Dependency& d) { return NamedDependency{d, parameters}; });
 }
 
 void bind_dependency(py::module_& m) {
@@ -78,7 +53,7 @@ void bind_evaluation(py::module_& m) {
   py::class_<ListChange>(m, "Change", "A change of a list and what it brings.")
       .def_readonly("poses", &ListChange::poses, "ids to drop, 1 = the first of the list")
       .def_readonly("added", &ListChange::added, "poses to add")
-      .def_property_readonly("configurations", [](const ListChange& c) { return configurations(c.added); })
+      .def_property_readonly("configurations", [](const ListChange& c) { return pose_configurations(c.added); })
       .def_readonly("efficiency", &ListChange::efficiency, "of the changed list relative to the list as it is")
       .def_readonly("log_det", &ListChange::log_det)
       .def_readonly("rho0", &ListChange::rho0, "m, or None")
@@ -89,12 +64,7 @@ void bind_evaluation(py::module_& m) {
   py::class_<E>(m, "Evaluation", "What a list of poses is worth.")
       .def_readonly("plan", &E::plan, "the list as a plan: log det, sigma, contributions, certificate")
       .def_property_readonly(
-          "scores",
-          [](const E& e) {
-            py::dict scores;
-            for (const CriterionScore& s : e.scores) scores[py::str(s.name)] = s;
-            return scores;
-          },
+          "scores", [](const E& e) { return dict_of(e.scores, &CriterionScore::name, std::identity()); },
           "{criterion: Score}")
       .def_readonly("drop", &E::drop, "which poses to leave out, or None")
       .def_readonly("add", &E::add, "which poses to measure more, or None")
@@ -117,9 +87,13 @@ void bind_observation(py::module_& m) {
           "singular_values", [](const O& o) { return array_of(o.identifiability.singular_values); },
           "of G with columns in units of tolerance, descending")
       .def_property_readonly(
-          "parameters", [](const O& o) { return planned_parameters(o.parameters); }, "all free ones, nuisance first")
+          "parameters",
+          [](const O& o) {
+            return of_each(o.parameters, [](const Parameter& p) { return PlannedParameter{p, "", std::nullopt, ""}; });
+          },
+          "all free ones, nuisance first")
       .def_property_readonly(
-          "kept", [](const O& o) { return names_of(o.kept); }, "names of the independent ones")
+          "kept", [](const O& o) { return of_each(o.kept, &Parameter::name); }, "names of the independent ones")
       .def_property_readonly("dependencies",
                              [](const O& o) { return named(o.identifiability.dependencies, o.parameters); })
       .def_property_readonly(
@@ -128,11 +102,9 @@ void bind_observation(py::module_& m) {
                     "that determine all kept ones; None: the pool does not suffice")
       .def_property_readonly(
           "recommended",
-          [](const O& o) -> std::optional<Names> {
+          [](const O& o) -> std::optional<std::vector<std::string>> {
             if (!o.practical) return std::nullopt;
-            Names names;
-            for (const int j : o.practical->recommended) names.push_back(o.kept[std::size_t(j)].name);
-            return names;
+            return of_each(o.practical->recommended, [&](int j) { return o.kept[std::size_t(j)].name; });
           },
           "what is worth identifying, nuisance included; None where nothing can be said")
       .def_property_readonly(
@@ -169,27 +141,17 @@ void bind_route(py::module_& m) {
       });
   py::class_<Route>(m, "Route", "Order of measurement and the motions between the poses; docs/cell.md.")
       .def_property_readonly(
-          "order",
-          [](const Route& r) {
-            std::vector<int> ids;
-            for (const PlannedPose& pose : r.poses) ids.push_back(pose.id);
-            return ids;
-          },
-          "pose ids")
+          "order", [](const Route& r) { return of_each(r.poses, &PlannedPose::id); }, "pose ids")
       .def_readonly("poses", &Route::poses, "in measuring order")
       .def_property_readonly(
-          "configurations", [](const Route& r) { return configurations(r.poses); }, "in that order")
+          "configurations", [](const Route& r) { return pose_configurations(r.poses); }, "in that order")
       .def_readonly("motions", &Route::motions)
       .def_readonly("names", &Route::names, "of what moves")
       .def_readonly("units", &Route::units)
       .def_property_readonly("home", [](const Route& r) { return array_of(r.home); })
       .def_property_readonly(
           "unreachable",
-          [](const Route& r) {
-            py::dict result;
-            for (const SkippedPose& s : r.unreachable) result[py::int_(s.pose)] = s.reason;
-            return result;
-          },
+          [](const Route& r) { return dict_of(r.unreachable, &SkippedPose::pose, &SkippedPose::reason); },
           "{pose id: reason}")
       .def_property_readonly("travel_seconds", &Route::travel_seconds)
       .def_property_readonly("change_seconds", &Route::change_seconds)

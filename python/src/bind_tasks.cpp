@@ -6,20 +6,16 @@
 #include "keywords.hpp"
 #include "made.hpp"
 #include "posewright/lists/parameters_file.hpp"
-#include "posewright/lists/read_poses.hpp"
 #include "posewright/model/variant_columns.hpp"
 #include "posewright/options/tables.hpp"
 #include "posewright/report/report.hpp"
 #include "posewright/report/report_problem.hpp"
-#include "posewright/report/report_result.hpp"
 #include "posewright/results/calibrated_dh_table.hpp"
 #include "posewright/results/calibration.hpp"
 #include "posewright/results/comparison.hpp"
 #include "posewright/results/simulation.hpp"
 #include "posewright/results/stations.hpp"
 #include "posewright/support/error.hpp"
-#include "posewright/support/file.hpp"
-#include "posewright/support/json.hpp"
 #include "posewright/tasks/compare_problem.hpp"
 #include "posewright/tasks/place_stations.hpp"
 #include "posewright/tasks/simulate_problem.hpp"
@@ -95,10 +91,8 @@ py::dict estimated(const Calibration& c, Value value) {
 }
 
 py::dict frames_of(const MadeCalibration& made) {
-  py::dict result;
-  for (const PlacedFrame& frame : made.value.frames)
-    result[py::str(frame.name)] = array_of(Eigen::MatrixXd(frame.X.matrix()));
-  return result;
+  return dict_of(made.value.frames, &PlacedFrame::name,
+                 [](const PlacedFrame& frame) { return array_of(Eigen::MatrixXd(frame.X.matrix())); });
 }
 
 MadeSimulation simulate(const Shared& problem, const py::object& poses, const py::object& variant,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
 #include <filesystem>
@@ -13,7 +14,6 @@
 #include "posewright/problem/problem.hpp"
 #include "posewright/results/plan.hpp"
 #include "posewright/study/variant.hpp"
-#include "posewright/support/monitor.hpp"
 #include "watch.hpp"
 
 namespace posewright::python {
@@ -64,9 +64,28 @@ PoseList pose_list(const py::object& poses, const std::vector<Coordinate>& coord
 /// The kept columns of a plan's variant.
 std::vector<std::string> kept_parameters(const Plan& plan, const std::string& variant);
 
+/// value(entry) of each entry of a list.
+template <class List, class Value>
+auto of_each(const List& list, Value value) {
+  std::vector<std::decay_t<decltype(std::invoke(value, *list.begin()))>> result;
+  for (const auto& entry : list) result.push_back(std::invoke(value, entry));
+  return result;
+}
+/// {key(entry): value(entry)} of a list.
+template <class List, class Key, class Value>
+py::dict dict_of(const List& list, Key key, Value value) {
+  py::dict result;
+  for (const auto& entry : list) result[py::cast(std::invoke(key, entry))] = std::invoke(value, entry);
+  return result;
+}
+/// N × n, SI, without load cases and stations.
+py::array_t<double> pose_configurations(const std::vector<PlannedPose>& poses);
+
 /// json.loads.
 py::object parsed(const std::string& json);
-/// Writes text; FileExistsError where there is a file and `overwrite` is false.
+/// Throws FileExistsError where there is a file, unless `overwrite`.
+void require_absent(const std::filesystem::path& file, bool overwrite);
+/// Writes text. Throws as require_absent().
 void save_text(const py::object& path, const std::string& text, bool overwrite);
 /// {"o1": …, …}
 py::dict indices_dict(const ObservabilityIndices& indices);

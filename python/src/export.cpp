@@ -46,9 +46,7 @@ Exported exported(const py::object& plan, const std::string& to, const std::shar
 }
 
 py::dict files_of(const Exported& made) {
-  py::dict files;
-  for (const ExportedFile& file : made.files) files[py::str(file.name)] = py::bytes(file.bytes);
-  return files;
+  return dict_of(made.files, &ExportedFile::name, [](const ExportedFile& file) { return py::bytes(file.bytes); });
 }
 
 /// The first file is the program, or what opens the others: it is written when they are there.
@@ -56,9 +54,7 @@ std::vector<fs::path> save(const Exported& made, const fs::path& folder, bool ov
   std::vector<fs::path> files;
   for (const ExportedFile& file : made.files) {
     files.push_back(folder / file.name);
-    if (!fs::exists(files.back()) || overwrite) continue;
-    PyErr_SetString(PyExc_FileExistsError, (files.back().string() + " exists; overwrite=True replaces it").c_str());
-    throw py::error_already_set();
+    require_absent(files.back(), overwrite);
   }
   for (std::size_t i = files.size(); i-- > 0;) {
     if (files[i].has_parent_path()) fs::create_directories(files[i].parent_path());

@@ -29,7 +29,7 @@ class Keywords {
   template <class Options>
   void read(const OptionTable<Options>& table, Options& options) {
     table.read(options, [&](const OptionRow& row) { return given(row); });
-    take_run(options);
+    set_run(options, seed_, threads_);
   }
   bool flag(const std::string& name);
   std::optional<double> time_limit() { return take("time_limit").cast<std::optional<double>>(); }
@@ -44,15 +44,6 @@ class Keywords {
 
  private:
   std::optional<GivenOption> given(const OptionRow& row);
-
-  template <class Options>
-  void take_run(Options& options) const {
-    if constexpr (requires { options.options.run; }) take_run(options.options.run);
-    else if constexpr (requires { options.run; }) take_run(options.run);
-    else if constexpr (requires { options.experiment; }) take_run(options.experiment);
-    if constexpr (requires { options.seed; }) options.seed = seed_;
-    if constexpr (requires { options.threads; }) options.threads = threads_;
-  }
 
   std::uint64_t seed_ = 0;
   int threads_ = 0;

@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "bindings.hpp"
+#include "keywords.hpp"
 #include "posewright/report/report.hpp"
 #include "posewright/report/report_result.hpp"
 #include "posewright/support/json.hpp"
@@ -23,16 +23,12 @@ struct Made {
   Options options;
   T value;
 
-  /// Runs the work under a Watch; what it throws names keys of a problem that was not a file.
+  /// watched() of the work.
   template <class Work>
-  static Made of(Shared problem, Options options, Limit time_limit, py::object progress, const Work& work) {
+  static Made of(Shared problem, Options options, Limit time_limit, const py::object& progress, const Work& work) {
     Made made{std::move(problem), std::move(options), {}};
-    Watch watch(time_limit, std::move(progress));
-    watch.run(
-        [&](const Monitor& monitor) {
-          made.value = with_places(*made.problem, [&] { return work(made.problem->problem, made.options, monitor); });
-        },
-        OnInterrupt::raise);
+    made.value = watched(*made.problem, time_limit, progress, OnInterrupt::raise,
+                         [&](const Monitor& monitor) { return work(made.problem->problem, made.options, monitor); });
     return made;
   }
 };

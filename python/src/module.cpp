@@ -10,20 +10,10 @@ namespace posewright::python {
 
 void bind_criteria(py::module_& m) {
   m.def(
-      "criteria",
-      [] {
-        py::dict names;
-        for (const CriterionEntry& entry : criterion_registry()) names[py::str(entry.name)] = entry.summary;
-        return names;
-      },
+      "criteria", [] { return dict_of(criterion_registry(), &CriterionEntry::name, &CriterionEntry::summary); },
       "Names of the criteria, each with what it maximises.");
   m.def(
-      "methods",
-      [] {
-        py::dict names;
-        for (const PlannerEntry& entry : planner_registry()) names[py::str(entry.name)] = entry.summary;
-        return names;
-      },
+      "methods", [] { return dict_of(planner_registry(), &PlannerEntry::name, &PlannerEntry::summary); },
       "Names of the planners, each with what it does.");
   m.def("_shown", &shown_value, py::arg("value"), py::arg("unit"), "A value in SI as tables show it.");
 }

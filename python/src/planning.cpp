@@ -2,9 +2,7 @@
 
 #include "bindings.hpp"
 #include "keywords.hpp"
-#include "posewright/lists/read_poses.hpp"
 #include "posewright/options/tables.hpp"
-#include "posewright/support/error.hpp"
 #include "posewright/tasks/evaluate_problem.hpp"
 #include "posewright/tasks/observe_problem.hpp"
 #include "posewright/tasks/plan_problem.hpp"

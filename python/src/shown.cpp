@@ -3,19 +3,13 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <algorithm>
-#include <cmath>
 
+#include "arrays.hpp"
 #include "bindings.hpp"
 #include "posewright/support/file.hpp"
+#include "posewright/support/table.hpp"
 
 namespace posewright::python {
-namespace {
-
-/// Rounded down: what is stated as reached must be.
-std::string percent(double share) { return fmt::format("{:.2f} %", std::floor(1e4 * share) / 100); }
-
-}  // namespace
-
 std::string plan_line(const Plan& plan) {
   const auto kept = std::count_if(plan.parameters.begin(), plan.parameters.end(),
                                   [](const PlannedParameter& p) { return p.sigma.has_value(); });
@@ -29,6 +23,12 @@ std::string plan_line(const Plan& plan) {
 
 py::object parsed(const std::string& json) { return py::module_::import("json").attr("loads")(json); }
 
+py::array_t<double> pose_configurations(const std::vector<PlannedPose>& poses) {
+  const auto rows =
+      of_each(poses, [](const PlannedPose& pose) { return of_each(pose.configuration, &NamedValue::value); });
+  return array_of(rows, rows.empty() ? 0 : rows.front().size());
+}
+
 py::dict indices_dict(const ObservabilityIndices& o) {
   py::dict result;
   result["o1"] = o.o1;
@@ -39,12 +39,15 @@ py::dict indices_dict(const ObservabilityIndices& o) {
   return result;
 }
 
+void require_absent(const std::filesystem::path& file, bool overwrite) {
+  if (!std::filesystem::exists(file) || overwrite) return;
+  PyErr_SetString(PyExc_FileExistsError, (file.string() + " exists; overwrite=True replaces it").c_str());
+  throw py::error_already_set();
+}
+
 void save_text(const py::object& path, const std::string& text, bool overwrite) {
   const auto file = path.cast<std::filesystem::path>();
-  if (std::filesystem::exists(file) && !overwrite) {
-    PyErr_SetString(PyExc_FileExistsError, (file.string() + " exists; overwrite=True replaces it").c_str());
-    throw py::error_already_set();
-  }
+  require_absent(file, overwrite);
   write_file_atomically(file, text);
 }
 

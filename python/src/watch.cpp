@@ -2,7 +2,6 @@
 
 #include <pybind11/stl.h>
 
-#include <cmath>
 #include <condition_variable>
 #include <exception>
 #include <mutex>

@@ -18,7 +18,6 @@
 #include "posewright/tasks/next_poses.hpp"
 #include "posewright/tasks/samples_problem.hpp"
 #include "problem_source.hpp"
-#include "result_files.hpp"
 #include "session.hpp"
 #include "terminal.hpp"
 #include "write_result.hpp"
@@ -43,9 +42,9 @@ struct Results {
   std::optional<DhConvention> dh;
 
   Results(const po::variables_map& values, const Problem& problem, const CalibrateCall& calibrate)
-      : parameters(values.count("output") > 0 ? output_file(values, "output", "") : ""),
-        urdf(values.count("urdf") > 0 ? output_file(values, "urdf", "") : ""),
-        deformation(values.count("deformation") > 0 ? output_file(values, "deformation", "") : ""),
+      : parameters(output_file(values, "output")),
+        urdf(output_file(values, "urdf")),
+        deformation(output_file(values, "deformation")),
         dh(calibrate.dh) {
     if ((!urdf.empty() || dh) && std::get_if<SerialArmSpec>(&problem.robot) == nullptr)
       throw InputError({}, urdf.empty() ? "--dh is for serial arms" : "--urdf is for serial arms", "robot: urdf");
@@ -75,7 +74,7 @@ std::vector<FileToWrite> files_to_write(const Results& wanted, const Problem& pr
   return files;
 }
 
-CalibrateCall options_of(const po::variables_map& values, const Words& positional, const CommonOptions& common) {
+CalibrateCall options_of(const po::variables_map& values, const Words& positional) {
   CalibrateCall calibrate;
   if (values.count("samples") > 0) {
     if (!positional.empty()) throw InputError({}, "--samples and " + positional.front(), "one of them");
@@ -88,7 +87,6 @@ CalibrateCall options_of(const po::variables_map& values, const Words& positiona
     calibrate.campaigns.assign(positional.begin() + 2, positional.end());
   }
   read_options(calibrate_options(), values, calibrate);
-  calibrate.threads = common.threads;
   return calibrate;
 }
 
@@ -138,8 +136,7 @@ std::optional<NextPoses> next_of_samples(const CommonOptions& common, const Prob
   next.text = read_file(calibrate.data);
   next.poses = poses_looked_ahead;
   next.prior = calibrate.prior;
-  next.seed = common.seed;
-  next.threads = common.threads;
+  set_run(next, common.seed, common.threads);
   try {
     return watched(common, 0, [&](const Monitor& monitor) { return next_poses(problem, next, monitor); }).result;
   } catch (const CannotDo& why) {
@@ -152,7 +149,7 @@ std::optional<NextPoses> next_of_samples(const CommonOptions& common, const Prob
 
 int run_calibrate(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
-  CalibrateCall calibrate = options_of(values, positional, common);
+  CalibrateCall calibrate = options_of(values, positional);
   const Problem problem = positional.empty() ? problem_of_samples(calibrate.data, values, calibrate)
                                              : given_problem(positional.front(), values);
   const Results wanted(values, problem, calibrate);

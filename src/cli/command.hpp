@@ -2,13 +2,11 @@
 
 #include <boost/program_options.hpp>
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "posewright/options/option.hpp"
-#include "posewright/support/error.hpp"
 
 namespace posewright::cli {
 
@@ -81,10 +79,12 @@ po::options_description described(const OptionTable<Options>& table) {
   for (const OptionRow& row : table.rows()) add_option(options, row);
   return options;
 }
-/// Reads the options that are given into `options`.
+/// Reads the options that are given into `options`, --seed and --threads too.
 template <class Options>
 void read_options(const OptionTable<Options>& table, const po::variables_map& values, Options& options) {
   table.read(options, [&](const OptionRow& row) { return given_option(values, row); });
+  const CommonOptions common = common_values(values);
+  set_run(options, common.seed, common.threads);
 }
 
 }  // namespace posewright::cli

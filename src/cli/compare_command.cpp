@@ -25,8 +25,7 @@ po::options_description compare_command_options() {
   return options.add(resume_option()).add(problem_options());
 }
 
-CompareOptions options_of(const Problem& problem, const po::variables_map& values, const Words& positional,
-                          const CommonOptions& common) {
+CompareOptions options_of(const Problem& problem, const po::variables_map& values, const Words& positional) {
   CompareOptions compare;
   read_options(compare_options(), values, compare);
   const std::string from = text_of(values, "from");
@@ -37,8 +36,6 @@ CompareOptions options_of(const Problem& problem, const po::variables_map& value
       throw InputError({}, std::string("--") + option + " is for plans that are searched",
                        "leave it out, or the plans");
   if (!given && !from.empty()) throw InputError({}, "--from is for given plans", "name them after the problem");
-  compare.run.seed = common.seed;
-  compare.run.threads = common.threads;
   if (!given) return compare;
   const std::vector<Coordinate> coordinates =
       pose_coordinates(problem, compare.variants.empty() ? "" : compare.variants.front());
@@ -51,7 +48,7 @@ int run_compare(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
   if (positional.empty()) throw InputError({}, "PROBLEM is missing", "see posewright help compare");
   const Problem problem = designed_problem(positional.front(), values, compare_keys());
-  const CompareOptions compare = options_of(problem, values, positional, common);
+  const CompareOptions compare = options_of(problem, values, positional);
   const auto engine = engine_of(values, "compare");
   const auto [result, was_interrupted] = watched(
       common, 0, [&](const Monitor& monitor) { return compare_problem(problem, compare, monitor); }, engine.get());

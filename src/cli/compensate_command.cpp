@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include "command.hpp"
-#include "posewright/lists/parameters_file.hpp"
 #include "posewright/model/apply_parameters.hpp"
 #include "posewright/model/calibrated_values.hpp"
 #include "posewright/model/corrected_urdf.hpp"
@@ -16,7 +15,6 @@
 #include "posewright/support/json.hpp"
 #include "posewright/tasks/compensate_documents.hpp"
 #include "problem_source.hpp"
-#include "result_files.hpp"
 #include "session.hpp"
 #include "terminal.hpp"
 #include "write_result.hpp"
@@ -38,7 +36,7 @@ Problem calibrated_problem(const po::variables_map& values, const fs::path& para
 
 /// Paths of the output: one file by its name, several into a folder under their own names.
 std::vector<fs::path> output_places(const po::variables_map& values, const Words& files) {
-  const fs::path output = values.count("output") > 0 ? output_file(values, "output", "") : fs::path();
+  const fs::path output = output_file(values, "output");
   if (output.empty()) return {};
   std::error_code code;
   const bool folder =
@@ -51,25 +49,6 @@ std::vector<fs::path> output_places(const po::variables_map& values, const Words
   return result;
 }
 
-/// A folder that is not there yet, made for what is written and removed again where nothing is.
-class NewFolder {
- public:
-  explicit NewFolder(const fs::path& folder) : folder_(folder) {
-    std::error_code code;
-    if (folder_.empty() || fs::exists(folder_, code)) folder_.clear();
-    else fs::create_directory(folder_, code);
-  }
-  ~NewFolder() {
-    std::error_code code;
-    if (!folder_.empty()) fs::remove(folder_, code);  // not one that has files
-  }
-  NewFolder(const NewFolder&) = delete;
-  NewFolder& operator=(const NewFolder&) = delete;
-
- private:
-  fs::path folder_;
-};
-
 /// Output files of the robot itself, as `calibrate` writes them.
 struct RobotFiles {
   fs::path urdf, xacro, kinematics;  ///< empty: not asked for
@@ -78,9 +57,9 @@ struct RobotFiles {
   std::vector<std::string> notes;
 
   RobotFiles(const po::variables_map& values, std::optional<DhConvention> dh)
-      : urdf(values.count("urdf") > 0 ? output_file(values, "urdf", "") : fs::path()),
-        xacro(values.count("xacro") > 0 ? output_file(values, "xacro", "") : fs::path()),
-        kinematics(values.count("ur-kinematics") > 0 ? output_file(values, "ur-kinematics", "") : fs::path()),
+      : urdf(output_file(values, "urdf")),
+        xacro(output_file(values, "xacro")),
+        kinematics(output_file(values, "ur-kinematics")),
         dh_(dh) {}
 
   bool any() const { return !urdf.empty() || !xacro.empty() || !kinematics.empty() || dh_; }
@@ -145,7 +124,6 @@ int run_compensate(const po::variables_map& values, const Words& positional) {
   const Words files(positional.begin() + 1, positional.end());
   CompensateCall call;
   read_options(compensate_options(), values, call);
-  call.threads = common.threads;
   RobotFiles robot(values, call.dh);
   if (files.empty() && !robot.any())
     throw InputError({}, "FILE is missing", "poses to compensate, --urdf, --xacro, --ur-kinematics or --dh");
@@ -155,8 +133,8 @@ int run_compensate(const po::variables_map& values, const Words& positional) {
   std::vector<fs::path> outputs = to, inputs = files_of(problem);
   outputs.insert(outputs.end(), {robot.urdf, robot.xacro, robot.kinematics});
   inputs.insert(inputs.end(), files.begin(), files.end());
-  const NewFolder folder(!to.empty() && to.front() != fs::path(text_of(values, "output")) ? to.front().parent_path()
-                                                                                          : fs::path());
+  const bool to_folder = !to.empty() && to.front() != fs::path(text_of(values, "output"));
+  const NewFolders folders(to_folder ? to : std::vector<fs::path>());
   check_output_files(values, outputs, inputs);
   robot.make(problem);
 

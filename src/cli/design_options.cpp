@@ -11,7 +11,6 @@
 #include "posewright/criterion/registry.hpp"
 #include "posewright/options/tables.hpp"
 #include "posewright/problem/design_keys.hpp"
-#include "posewright/study/study.hpp"
 #include "posewright/support/json.hpp"
 #include "problem_source.hpp"
 

@@ -10,7 +10,6 @@
 #include "problem_source.hpp"
 #include "session.hpp"
 #include "terminal.hpp"
-#include "write_result.hpp"
 
 namespace posewright::cli {
 namespace {
@@ -30,8 +29,6 @@ int run_evaluate(const po::variables_map& values, const Words& positional) {
     throw InputError({}, "two arguments are needed: PROBLEM POSES", "see posewright help evaluate");
   EvaluateCall call;
   read_options(evaluate_options(), values, call);
-  call.options.run.seed = common.seed;
-  call.options.run.threads = common.threads;
   const Problem problem = designed_problem(positional[0], values, evaluate_keys());
   const PoseList poses = poses_to_evaluate(positional[1], pose_coordinates(problem), call.reading);
   const auto [result, was_interrupted] = watched(common, time_limit(values), [&](const Monitor& monitor) {

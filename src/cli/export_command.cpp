@@ -12,7 +12,6 @@
 #include "posewright/support/text_file.hpp"
 #include "posewright/tasks/export_sequence.hpp"
 #include "problem_source.hpp"
-#include "result_files.hpp"
 #include "session.hpp"
 #include "write_result.hpp"
 
@@ -68,32 +67,6 @@ std::vector<fs::path> places(const PoseFormat& format, const Exported& exported,
   return result;
 }
 
-/// Folders of programs of several files are made where they are missing, and removed again where nothing comes of it.
-class Folders {
- public:
-  explicit Folders(const std::vector<fs::path>& files) {
-    for (const fs::path& file : files)
-      for (fs::path folder = file.parent_path(); !folder.empty() && !fs::exists(folder); folder = folder.parent_path())
-        missing_.push_back(folder);
-    for (const fs::path& file : files) {
-      std::error_code code;
-      if (file.has_parent_path()) fs::create_directories(file.parent_path(), code);
-    }
-  }
-  ~Folders() {
-    std::error_code code;
-    if (!kept_)
-      for (const fs::path& folder : missing_) fs::remove(folder, code);
-  }
-  Folders(const Folders&) = delete;
-  Folders& operator=(const Folders&) = delete;
-  void keep() { kept_ = true; }
-
- private:
-  std::vector<fs::path> missing_;  // innermost first
-  bool kept_ = false;
-};
-
 /// Refuses to replace measured values in a file by predictions. Such a file still begins as ours does.
 void keep_measurements(const PoseFormat& format, const std::vector<fs::path>& files, const Exported& exported) {
   if (!format.to_be_filled) return;
@@ -147,8 +120,7 @@ void print_table(bool json) {
     fmt::print("{}", json_text(list));
     return;
   }
-  using A = Table::Align;
-  Table table({"format", "what", "read by", "ending", "--from", "needs"}, std::vector<A>(6, A::left));
+  Table table({"format", "what", "read by", "ending", "--from", "needs"}, "l");
   for (const PoseFormat& format : pose_formats())
     table.row({format.name + (format.controller ? " *" : ""), format.description, format.used_by,
                format.extension.empty() ? "folder" : format.extension, format.read != nullptr ? "yes" : "",
@@ -195,11 +167,10 @@ int run_export(const po::variables_map& values, const Words& positional) {
   const std::vector<fs::path> files = places(format, exported, output);
   std::vector<fs::path> inputs = {plan};
   if (const fs::path file = export_settings.controller.path; !file.empty()) inputs.push_back(file);
-  Folders folders(format.several_files ? files : std::vector<fs::path>());
+  const NewFolders folders(format.several_files ? files : std::vector<fs::path>());
   if (values.count("force") == 0) keep_measurements(format, files, exported);
   check_outputs(changed(files, exported), inputs, values.count("force") > 0);
   write_results(with_program_last(files, exported));
-  folders.keep();
   print_notes(exported.notes);
   if (common.json) {
     fmt::print("{}", summary_json(format, sequence, files, exported.notes));

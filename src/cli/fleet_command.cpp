@@ -12,7 +12,6 @@
 #include "posewright/support/table.hpp"
 #include "posewright/tasks/plan_fleet.hpp"
 #include "problem_source.hpp"
-#include "result_files.hpp"
 #include "session.hpp"
 #include "task_options.hpp"
 #include "terminal.hpp"
@@ -63,9 +62,8 @@ void write(const FleetFiles& files, const FleetPlan& plan) {
 }
 
 std::string fleet_text(const std::vector<std::string>& names, const std::vector<FleetPlan>& fleet) {
-  using Align = Table::Align;
   Table table({"robot", "variant", "poses", "log det", "of the best at least", "predicted error", "from noise alone"},
-              {Align::left, Align::left, Align::right, Align::right, Align::right, Align::right, Align::right});
+              "llr");
   std::string failures;
   for (std::size_t i = 0; i < fleet.size(); ++i) {
     const FleetPlan& plan = fleet[i];
@@ -105,8 +103,7 @@ int run_fleet(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
   if (positional.empty()) throw InputError({}, "no problem files are named", "see posewright help fleet");
   RunOptions run;
-  run.seed = common.seed;
-  run.threads = common.threads;
+  set_run(run, common.seed, common.threads);
   const auto engine = engine_of(values, "fleet");
   std::vector<Problem> problems;
   std::vector<fs::path> inputs, outputs;

@@ -21,7 +21,6 @@
 #include "posewright/support/table.hpp"
 #include "posewright/support/text.hpp"
 #include "problem_source.hpp"
-#include "result_files.hpp"
 #include "session.hpp"
 #include "terminal.hpp"
 #include "write_result.hpp"
@@ -152,8 +151,7 @@ void print_cameras(bool json) {
     fmt::print("{}", json_text(list));
     return;
   }
-  using A = Table::Align;
-  Table table({"camera", "image", "focal length", "view", "source"}, {A::left, A::right, A::right, A::right, A::left});
+  Table table({"camera", "image", "focal length", "view", "source"}, "lrrrl");
   constexpr double degrees = 180 / std::numbers::pi;
   for (const KnownCamera& camera : known_cameras())
     table.row({camera.name, fmt::format("{} x {}", camera.width, camera.height), fmt::format("{} px", camera.focal),

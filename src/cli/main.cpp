@@ -23,10 +23,10 @@
 #include "posewright/support/text.hpp"
 #include "posewright/version.hpp"
 #include "processes.hpp"
-#include "result_files.hpp"
 #include "session.hpp"
 #include "signals.hpp"
 #include "terminal.hpp"
+#include "write_result.hpp"
 
 namespace posewright::cli {
 namespace {

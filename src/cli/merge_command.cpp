@@ -2,8 +2,6 @@
 
 #include "command.hpp"
 #include "posewright/support/task_log.hpp"
-#include "result_files.hpp"
-#include "session.hpp"
 #include "terminal.hpp"
 #include "write_result.hpp"
 

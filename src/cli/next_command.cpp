@@ -13,12 +13,10 @@
 #include "posewright/options/tables.hpp"
 #include "posewright/results/next.hpp"
 #include "posewright/study/variant.hpp"
-#include "posewright/support/file.hpp"
 #include "posewright/support/json.hpp"
 #include "posewright/support/text_file.hpp"
 #include "posewright/tasks/next_state.hpp"
 #include "problem_source.hpp"
-#include "result_files.hpp"
 #include "session.hpp"
 #include "signals.hpp"
 #include "terminal.hpp"
@@ -107,11 +105,9 @@ std::filesystem::path usual_state_file(const std::filesystem::path& data) {
 
 po::options_description next_command_options() { return described(next_options()).add(problem_options()); }
 
-NextOptions options_of(const po::variables_map& values, const CommonOptions& common) {
+NextOptions options_of(const po::variables_map& values) {
   NextOptions next;
   read_options(next_options(), values, next);
-  next.seed = common.seed;
-  next.threads = common.threads;
   if (values.count("watch") > 0 && next.data.empty()) throw InputError({}, "--watch follows a file", "--data FILE");
   return next;
 }
@@ -177,7 +173,7 @@ class NextSession {
 
 int run_next(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
-  NextOptions next = options_of(values, common);
+  NextOptions next = options_of(values);
   const Problem problem = given_problem(single(positional, "PROBLEM"), values);
   if (const std::string list = text_of(values, "candidates-from"); !list.empty()) {
     if (next.candidates)

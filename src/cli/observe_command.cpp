@@ -19,8 +19,6 @@ int run_observe(const po::variables_map& values, const Words& positional) {
   const Problem problem = given_problem(single(positional, "PROBLEM"), values);
   ObserveOptions observe;
   read_options(observe_options(), values, observe);
-  observe.seed = common.seed;
-  observe.threads = common.threads;
   const auto [observations, was_interrupted] =
       watched(common, 0, [&](const Monitor& monitor) { return observe_problem(problem, observe, monitor); });
   // A shortened pool would be shown as if it were whole.

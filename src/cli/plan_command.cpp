@@ -24,20 +24,17 @@ int run_plan(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
   PlanCall call;
   read_options(plan_options(), values, call);
-  RunOptions& run = call.run;
-  run.seed = common.seed;
-  run.threads = common.threads;
   const Problem problem = designed_problem(single(positional, "PROBLEM"), values, plan_keys());
   const auto engine = engine_of(values, "plan");
   const Outputs outputs(values, files_of(problem), true, call.validation.has_value());
   std::function<Plan(const Plan&, const Monitor&)> validate;
   if (call.validation)
     validate = [&](const Plan& plan, const Monitor& monitor) {
-      return plan_validation(problem, run, plan, *call.validation, monitor);
+      return plan_validation(problem, call.run, plan, *call.validation, monitor);
     };
   return outputs.search_and_write(
-      common, time_limit(values), [&](const Monitor& monitor) { return plan_problem(problem, run, monitor); }, validate,
-      engine.get());
+      common, time_limit(values), [&](const Monitor& monitor) { return plan_problem(problem, call.run, monitor); },
+      validate, engine.get());
 }
 
 }  // namespace

@@ -13,7 +13,6 @@
 #include "posewright/report/report_problem.hpp"
 #include "posewright/report/report_result.hpp"
 #include "problem_source.hpp"
-#include "result_files.hpp"
 #include "session.hpp"
 #include "signals.hpp"
 #include "write_result.hpp"
@@ -53,7 +52,6 @@ int report_plan(const po::variables_map& values, const CommonOptions& common, co
                 const std::filesystem::path& file) {
   ReportOptions options;
   read_options(report_options(), values, options);
-  options.threads = common.threads;
   std::vector<std::filesystem::path> inputs{file};
   const GivenPlan plan = given_plan(values, file, inputs);
   if (!options.route.empty()) inputs.push_back(options.route);
@@ -89,8 +87,7 @@ int report_cell(const po::variables_map& values, const CommonOptions& common, co
   check_output_files(values, {page}, files_of(problem));
   DrawOptions options;
   options.ways = values.count("brief") == 0;
-  options.seed = common.seed;
-  options.threads = common.threads;
+  set_run(options, common.seed, common.threads);
   const auto [report, was_interrupted] = watched(
       common, time_limit(values), [&](const Monitor& monitor) { return draw_problem(problem, options, monitor); });
   if (was_interrupted) return interrupted;

@@ -8,7 +8,6 @@
 #include "posewright/study/variant.hpp"
 #include "posewright/tasks/route_problem.hpp"
 #include "problem_source.hpp"
-#include "result_files.hpp"
 #include "session.hpp"
 #include "terminal.hpp"
 #include "write_result.hpp"
@@ -25,8 +24,6 @@ int run_route(const po::variables_map& values, const Words& positional) {
   const std::string from = text_of(values, "from");
   if (!from.empty()) find_readable_format(from);
   read_options(route_options(), values, options);
-  options.seed = common.seed;
-  options.threads = common.threads;
   if (!from.empty() && text_of(values, "problem").empty())
     throw InputError({plan.string(), 0}, "names no problem file", "give it with --problem FILE");
   const std::filesystem::path file = problem_file(values, plan);

@@ -42,8 +42,6 @@ int run_select(const po::variables_map& values, const Words& positional) {
   SelectOptions select;
   read_options(select_options(), values, select);
   if (select.poses == 0) throw InputError({}, "--poses is missing", "give the number of blocks to choose");
-  select.seed = common.seed;
-  select.threads = common.threads;
   const bool spread = values.count("spread") > 0;
   if (spread) require_no_log(values);
   const auto engine = engine_of(values, "select");

@@ -9,7 +9,6 @@
 #include "posewright/support/json.hpp"
 #include "posewright/tasks/simulate_problem.hpp"
 #include "problem_source.hpp"
-#include "result_files.hpp"
 #include "session.hpp"
 #include "task_options.hpp"
 #include "terminal.hpp"
@@ -28,11 +27,9 @@ int run_simulate(const po::variables_map& values, const Words& positional) {
     throw InputError({}, "two arguments are needed: PROBLEM PLAN", "see posewright help simulate");
   SimulateOptions simulate;
   read_options(simulate_options(), values, simulate);
-  simulate.experiment.seed = common.seed;
-  simulate.experiment.threads = common.threads;
   const std::string from = text_of(values, "from");
   if (!from.empty()) find_readable_format(from);
-  const std::filesystem::path data = values.count("data") > 0 ? output_file(values, "data", "") : "";
+  const std::filesystem::path data = output_file(values, "data");
   const Problem problem = given_problem(positional[0], values);
   std::vector<std::filesystem::path> inputs = files_of(problem);
   inputs.emplace_back(positional[1]);

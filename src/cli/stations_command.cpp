@@ -27,8 +27,6 @@ int run_stations(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
   StationOptions stations;
   read_options(station_options(), values, stations);
-  stations.run.seed = common.seed;
-  stations.run.threads = common.threads;
   const auto engine = engine_of(values, "stations");
   const Problem problem = designed_problem(single(positional, "PROBLEM"), values, stations_keys());
   const auto [ranks, was_interrupted] = watched(

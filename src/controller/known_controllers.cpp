@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cstdint>
-
 #include "known_settings.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/near_words.hpp"

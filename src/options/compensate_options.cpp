@@ -74,8 +74,7 @@ std::vector<double> near_joints(const GivenOption& given) {
 
 const OptionTable<CompensateCall>& compensate_options() {
   using C = CompensateCall;
-  static const auto table = [] {
-    OptionTable<C> t;
+  return table_filled_by<C>([](OptionTable<C>& t) {
     t.of_program("output,o", "FILE|DIR", "corrected file; a folder for several files");
     t.flag("partial", "write files even if some poses or program lines are not compensated; those stay unchanged",
            &C::partial);
@@ -131,9 +130,7 @@ const OptionTable<CompensateCall>& compensate_options() {
     t.row({"dh", "KIND", "table of Denavit-Hartenberg parameters: distal or proximal (modified)"},
           [](C& o, const GivenOption& given) { o.dh = convention_of(given); });
     t.of_program("force", "", "replace files that posewright did not write");
-    return t;
-  }();
-  return table;
+  });
 }
 
 }  // namespace posewright

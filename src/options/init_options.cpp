@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <numeric>
 
 #include "posewright/options/tables.hpp"
 #include "posewright/support/error.hpp"
@@ -45,9 +44,8 @@ Eigen::Vector3d place_of(const GivenOption& given) {
 }
 
 const OptionTable<InitCall>& init_options() {
-  static const auto table = [] {
-    using C = InitCall;
-    OptionTable<C> t;
+  using C = InitCall;
+  return table_filled_by<C>([](OptionTable<C>& t) {
     t.flag("tracker", "laser tracker, with three reflectors on the flange", &C::tracker);
     t.row({"camera", "NAME", "camera and board: a name, WIDTHxHEIGHT@FOCAL in px, or list for the table of names"},
           [](C& o, const GivenOption& given) {
@@ -99,9 +97,7 @@ const OptionTable<InitCall>& init_options() {
     t.of_program("force", "", "replace an existing file");
     t.of_program("show", "", "open the page that plans with the problem in it (FILE.html beside the problem file)");
     t.of_program("yes", "", "ask no questions, even on a terminal");
-    return t;
-  }();
-  return table;
+  });
 }
 
 }  // namespace posewright

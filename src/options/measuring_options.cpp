@@ -25,9 +25,8 @@ Weighting weights_of(const GivenOption& given) { return weighting_of(word_of(giv
 }  // namespace
 
 const OptionTable<SimulateOptions>& simulate_options() {
-  static const auto table = [] {
-    using S = SimulateOptions;
-    OptionTable<S> t;
+  using S = SimulateOptions;
+  return table_filled_by<S>([](OptionTable<S>& t) {
     t.whole(
         "draws", "n", "virtual calibrations", 2, 10'000'000, [](S & o) -> auto& { return o.experiment.draws; });
     t.text("truth", "V", "variant that generates the readings (the calibrated one)", &S::truth);
@@ -78,15 +77,12 @@ const OptionTable<SimulateOptions>& simulate_options() {
     t.row({"from", "FORMAT", "format of PLAN: " + readable_format_names()});
     t.of_program("data", "FILE", "write the readings of the first draw, for calibrate");
     t.of_program("force", "", "replace a file that posewright did not write");
-    return t;
-  }();
-  return table;
+  });
 }
 
 const OptionTable<CalibrateCall>& calibrate_options() {
-  static const auto table = [] {
-    using C = CalibrateCall;
-    OptionTable<C> t;
+  using C = CalibrateCall;
+  return table_filled_by<C>([](OptionTable<C>& t) {
     t.row(
         {"variant", "V", "variant to calibrate (design: variant, or the first); a list A,B compares them in one table",
          OptionKind::list},
@@ -138,15 +134,12 @@ const OptionTable<CalibrateCall>& calibrate_options() {
           [](C& o, const GivenOption& given) { o.dh = convention_of(given); });
     t.of_program("force", "",
                  "replace files that posewright did not write; write even an estimate that is not fit for use");
-    return t;
-  }();
-  return table;
+  });
 }
 
 const OptionTable<NextOptions>& next_options() {
-  static const auto table = [] {
-    using N = NextOptions;
-    OptionTable<N> t;
+  using N = NextOptions;
+  return table_filled_by<N>([](OptionTable<N>& t) {
     t.row({"data", "FILE", "CSV of the readings so far; rows may be appended (none: no pose is measured yet)",
            OptionKind::file},
           [](N& o, const GivenOption& given) {
@@ -177,15 +170,12 @@ const OptionTable<NextOptions>& next_options() {
     t.of_program("output,o", "FILE", "next poses as CSV");
     t.of_program("result", "FILE", "file for the output of --json, rewritten at every step");
     t.of_program("force", "", replaces);
-    return t;
-  }();
-  return table;
+  });
 }
 
 const OptionTable<RouteOptions>& route_options() {
-  static const auto table = [] {
-    using R = RouteOptions;
-    OptionTable<R> t;
+  using R = RouteOptions;
+  return table_filled_by<R>([](OptionTable<R>& t) {
     t.flag("from-home", "begin at home (workspace: motion: home, else zero)", &R::from_home);
     t.flag("closed", "return to the start at the end", &R::closed);
     t.row({"start", "ID", "pose to begin with", OptionKind::whole}, [](R& o, const GivenOption& given) {
@@ -206,15 +196,12 @@ const OptionTable<RouteOptions>& route_options() {
     t.of_program("force", "", replaces);
     t.of_program("time-limit", "S", "stop after S seconds with the best order so far");
     t.row({"from", "FORMAT", "format of PLAN if it is not a plan: " + readable_format_names()});
-    return t;
-  }();
-  return table;
+  });
 }
 
 const OptionTable<ExportOptions>& export_options() {
-  static const auto table = [] {
-    using E = ExportOptions;
-    OptionTable<E> t;
+  using E = ExportOptions;
+  return table_filled_by<E>([](OptionTable<E>& t) {
     t.row({"to", "FORMAT", "format; list, or no --to: print the table of formats"});
     t.of_program("output,o", "FILE|DIR", "file or folder to write (a default name of the format; - for stdout)");
     t.of_program("force", "", replaces);
@@ -242,15 +229,12 @@ const OptionTable<ExportOptions>& export_options() {
     t.text("group", "NAME", "planning group of an SRDF (manipulator)", &E::group);
     t.row({"problem", "FILE", "problem file for the check of the program (the one named by the plan)"});
     t.row({"unchecked", "", "write the program without a check of limits and velocities", OptionKind::flag});
-    return t;
-  }();
-  return table;
+  });
 }
 
 const OptionTable<ReportOptions>& report_options() {
-  static const auto table = [] {
-    using R = ReportOptions;
-    OptionTable<R> t;
+  using R = ReportOptions;
+  return table_filled_by<R>([](OptionTable<R>& t) {
     t.of_program("output,o", "FILE", "the page (report.html; - for none)");
     t.text("route", "FILE", "route of the plan; the page shows its order and motions (none)", &R::route,
            OptionKind::file);
@@ -263,9 +247,7 @@ const OptionTable<ReportOptions>& report_options() {
     t.of_program("watch", "", "result: rewrite the page whenever the file changes; the open page reloads");
     t.of_program("force", "", replaces);
     t.of_program("time-limit", "S", "stop after S seconds with the parts that are finished");
-    return t;
-  }();
-  return table;
+  });
 }
 
 std::vector<CommandRows> option_rows() {

@@ -36,20 +36,16 @@ PoseList poses_to_evaluate(const std::string& file, const std::vector<Coordinate
 }
 
 const OptionTable<ObserveOptions>& observe_options() {
-  static const auto table = [] {
-    OptionTable<ObserveOptions> t;
+  return table_filled_by<ObserveOptions>([](OptionTable<ObserveOptions>& t) {
     t.text("variant", "V", "only this variant (all)", &ObserveOptions::variant);
     t.whole("candidates", "n", "number of feasible configurations to draw", 1, 1'000'000, &ObserveOptions::candidates);
     t.whole("poses", "N", "number of poses for the predicted σ (design: poses)", 1, 1'000'000, &ObserveOptions::poses);
     t.of_program("spectrum", "", "print the singular values of G too");
-    return t;
-  }();
-  return table;
+  });
 }
 
 const OptionTable<PlanCall>& plan_options() {
-  static const auto table = [] {
-    OptionTable<PlanCall> t;
+  return table_filled_by<PlanCall>([](OptionTable<PlanCall>& t) {
     t.whole("validation", "k", "k additional poses for validation: plan-validation.json, poses-validation.csv", 1,
             1'000'000, &PlanCall::validation);
     t.row({"gap", "P", "stop the workspace proof at this gap, in percent (0.1)", OptionKind::number},
@@ -58,15 +54,12 @@ const OptionTable<PlanCall>& plan_options() {
         "proof-time", "S",
         "time limit of the workspace proof in seconds; 0: no proof (an amount of work, some seconds)", 0, 1e9,
         [](PlanCall & o) -> auto& { return o.run.proof.seconds; });
-    return t;
-  }();
-  return table;
+  });
 }
 
 const OptionTable<SelectOptions>& select_options() {
-  static const auto table = [] {
-    using S = SelectOptions;
-    OptionTable<S> t;
+  using S = SelectOptions;
+  return table_filled_by<S>([](OptionTable<S>& t) {
     t.row({"poses", "N", "number of blocks to choose (required)", OptionKind::whole},
           [](S& o, const GivenOption& given) { o.poses = whole_of(given, 1, 1'000'000); });
     t.whole("rows", "r", "rows of a block; needed for CSV and two-dimensional .npy", 1, 100'000, &S::rows);
@@ -85,15 +78,12 @@ const OptionTable<SelectOptions>& select_options() {
           [](S& o, const GivenOption& given) { o.gap = percent_of(given) / 100; });
     t.flag("reserve", "optimise for the loss of the worst single block", &S::reserve);
     t.of_program("spread", "", "spread the blocks over the processes (mpirun, srun), if one memory cannot hold them");
-    return t;
-  }();
-  return table;
+  });
 }
 
 const OptionTable<EvaluateCall>& evaluate_options() {
-  static const auto table = [] {
-    using E = EvaluateCall;
-    OptionTable<E> t;
+  using E = EvaluateCall;
+  return table_filled_by<E>([](OptionTable<E>& t) {
     t.whole(
         "drop", "k", "suggest k poses to leave out", 1, 1'000'000, [](E & o) -> auto& { return o.options.drop; });
     t.whole(
@@ -119,27 +109,21 @@ const OptionTable<EvaluateCall>& evaluate_options() {
             for_programs(o, given);
             o.reading.coupling = number_of(given, -10, 10);
           });
-    return t;
-  }();
-  return table;
+  });
 }
 
 const OptionTable<CompareOptions>& compare_options() {
-  static const auto table = [] {
-    OptionTable<CompareOptions> t;
+  return table_filled_by<CompareOptions>([](OptionTable<CompareOptions>& t) {
     t.row({"variant", "V", "variants to compare, one or a list A,B (all)", OptionKind::list},
           [](CompareOptions& o, const GivenOption& given) { o.variants = names_of(given); });
     t.text("truth", "V", "effects of this variant on the others, by parameter, tolerances included",
            &CompareOptions::truth);
     t.row({"from", "FORMAT", "format of every PLAN: " + readable_format_names()});
-    return t;
-  }();
-  return table;
+  });
 }
 
 const OptionTable<StationOptions>& station_options() {
-  static const auto table = [] {
-    OptionTable<StationOptions> t;
+  return table_filled_by<StationOptions>([](OptionTable<StationOptions>& t) {
     t.whole("choose", "k", "number of stations to use (workspace: stations: choose, 1)", 1, 100,
             &StationOptions::choose);
     t.row({"pairs", "", "score every pair of places; without it, beyond 100 pairs, only pairs with the best place",
@@ -150,9 +134,7 @@ const OptionTable<StationOptions>& station_options() {
             o.choose = 2;
           });
     t.whole("full", "n", "number of best places that get a full plan", 0, 10'000, &StationOptions::full);
-    return t;
-  }();
-  return table;
+  });
 }
 
 }  // namespace posewright

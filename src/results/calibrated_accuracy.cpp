@@ -10,8 +10,6 @@
 
 namespace posewright {
 namespace {
-
-using Align = Table::Align;
 using Json = nlohmann::ordered_json;
 
 // More poses than this are not read one by one; --json has all.
@@ -40,6 +38,16 @@ Json pose_error_json(const PoseError& e) {
   return {{"position", finite_or_null(e.position)}, {"rotation", finite_or_null(e.rotation)}};
 }
 
+std::string verdict_of(const Calibration& c) {
+  if (!c.fit.converged) return "not converged";
+  if (c.verdict != Verdict::use_it) return verdict_word(c.verdict);
+  for (const JudgedRequirement& r : c.requirements)
+    if (r.refused()) return "a requirement is not met";
+  return "";
+}
+
+std::string shown_share(double value) { return std::isfinite(value) ? fmt::format("{:.3g}", value) : "none"; }
+
 }  // namespace
 
 std::vector<std::string> improvement_columns() {
@@ -56,9 +64,7 @@ std::string axes_text(const Calibration& c) {
   if (c.axes.empty()) return "";
   std::vector<std::string> header = joined({"error", "poses"}, improvement_columns());
   header.insert(header.end(), {"σ after", "mean after"});
-  std::vector<Align> align(header.size(), Align::right);
-  align[0] = align[1] = Align::left;
-  Table table(header, align);
+  Table table(header, "llr");
   for (const AxisImprovement& a : c.axes) {
     const auto shown = [&](double value) { return shown_value(value, a.after.unit); };
     std::vector<std::string> row = joined({a.after.axis, a.poses}, improvement_cells(a));
@@ -73,8 +79,7 @@ std::string axes_text(const Calibration& c) {
 
 std::string requirements_text(const Calibration& c) {
   if (c.requirements.empty()) return "";
-  Table table({"tip", "poses", "largest error", "at pose", "by noise alone", "required", ""},
-              {Align::left, Align::left, Align::right, Align::right, Align::right, Align::right, Align::left});
+  Table table({"tip", "poses", "largest error", "at pose", "by noise alone", "required", ""}, "llrrrrl");
   for (const JudgedRequirement& r : c.requirements)
     table.row({r.error.axis, r.poses, shown_value(r.error.largest, r.error.unit), std::to_string(r.error.pose),
                shown_value(r.error.by_noise, r.error.unit), shown_value(r.required, r.error.unit),
@@ -94,7 +99,7 @@ std::string predicted_poses_text(const Calibration& c) {
                                  [](const PoseResidual* p) { return std::isfinite(p->accuracy->observed.rotation); });
   std::vector<std::string> header = {"pose", "by the estimate", "with noise", "observed"};
   if (turns) header.insert(header.end(), {"turned: by the estimate", "with noise", "observed"});
-  Table table(header, std::vector<Align>(header.size(), Align::right));
+  Table table(header, "r");
   for (std::size_t k = 0; k < std::min(poses.size(), most_shown); ++k) {
     const PoseAccuracy& a = *poses[k]->accuracy;
     std::vector<std::string> row = {std::to_string(poses[k]->id), error_or_blank(a.predicted.by_estimate.position, "m"),
@@ -119,8 +124,7 @@ std::string steps_text(const Calibration& c) {
   for (const IdentificationStep& step : c.in_steps->steps)
     text += fmt::format("  {}: {} parameters; residuals {:.3g} times the stated noise after the first round\n",
                         step.name, step.columns, step.scale);
-  Table table({"parameter", "jointly", "in steps", "difference / σ"},
-              {Align::left, Align::right, Align::right, Align::right});
+  Table table({"parameter", "jointly", "in steps", "difference / σ"});
   for (const CalibratedParameter& p : c.parameters) {
     if (!p.in_steps) continue;
     table.row({p.label.name, shown_to(p.value, p.sigma, p.label.unit), shown_to(*p.in_steps, p.sigma, p.label.unit),
@@ -131,8 +135,7 @@ std::string steps_text(const Calibration& c) {
 
 std::string compensator_text(const CompensatorConstants& k) {
   const auto sigma = [&](int i) { return std::sqrt(k.covariance(i, i)); };
-  Table table({"compensator", "value", "σ", "its inverse", "σ"},
-              {Align::left, Align::right, Align::right, Align::right, Align::right});
+  Table table({"compensator", "value", "σ", "its inverse", "σ"});
   table.row({"K2⁰, joint", fmt::format("{:.4g} N·m/rad", k.joint_stiffness), fmt::format("{:.2g}", sigma(0)),
              fmt::format("{:.4f} µrad/(N·m)", 1e6 / k.joint_stiffness),
              fmt::format("{:.2g}", 1e6 * sigma(0) / (k.joint_stiffness * k.joint_stiffness))});
@@ -153,44 +156,36 @@ std::string compensator_text(const CompensatorConstants& k) {
 }
 
 Json compensator_json(const CompensatorConstants& k) {
-  Json rows = Json::array();
-  for (int i = 0; i < 3; ++i) rows.push_back({k.covariance(i, 0), k.covariance(i, 1), k.covariance(i, 2)});
   return {{"joint_stiffness", k.joint_stiffness},
           {"stiffness", k.stiffness},
           {"preload", k.preload},
           {"free_length", k.free_length},
           {"free_length_sigma", k.free_length_sigma},
-          {"covariance", rows},
+          {"covariance", matrix_json(k.covariance)},
           {"chi_square", k.chi_square},
           {"freedom", k.freedom}};
 }
 
 Json axes_json(const Calibration& c) {
-  Json list = Json::array();
-  for (const AxisImprovement& a : c.axes)
-    list.push_back({{"poses", a.poses},
-                    {"axis", a.after.axis},
-                    {"unit", a.after.unit},
-                    {"count", a.after.count},
-                    {"before", axis_json(a.before)},
-                    {"after", axis_json(a.after)}});
-  return list;
+  return list_json(c.axes, [](const AxisImprovement& a) {
+    return Json{{"poses", a.poses},       {"axis", a.after.axis},          {"unit", a.after.unit},
+                {"count", a.after.count}, {"before", axis_json(a.before)}, {"after", axis_json(a.after)}};
+  });
 }
 
 Json requirements_json(const Calibration& c) {
-  Json list = Json::array();
-  for (const JudgedRequirement& r : c.requirements)
-    list.push_back({{"poses", r.poses},
-                    {"axis", r.error.axis},
-                    {"unit", r.error.unit},
-                    {"count", r.error.count},
-                    {"largest", r.error.largest},
-                    {"largest_at_pose", r.error.pose},
-                    {"by_noise", r.error.by_noise},
-                    {"required", r.required},
-                    {"met", r.met()},
-                    {"hidden_by_noise", r.hidden_by_noise()}});
-  return list;
+  return list_json(c.requirements, [](const JudgedRequirement& r) {
+    return Json{{"poses", r.poses},
+                {"axis", r.error.axis},
+                {"unit", r.error.unit},
+                {"count", r.error.count},
+                {"largest", r.error.largest},
+                {"largest_at_pose", r.error.pose},
+                {"by_noise", r.error.by_noise},
+                {"required", r.required},
+                {"met", r.met()},
+                {"hidden_by_noise", r.hidden_by_noise()}};
+  });
 }
 
 Json pose_accuracy_json(const std::optional<PoseAccuracy>& accuracy) {
@@ -208,6 +203,43 @@ Json steps_json(const Calibration& c) {
   for (const CalibratedParameter& p : c.parameters)
     if (p.in_steps) values.push_back({{"name", p.label.name}, {"value", *p.in_steps}});
   return {{"rounds", c.in_steps->rounds}, {"settled", c.in_steps->settled}, {"steps", steps}, {"values", values}};
+}
+
+std::string models_text(const std::vector<Calibration>& models, const ModelChoice& choice) {
+  const bool validated = models.front().held_back > 0;
+  std::string text = fmt::format("{} models fitted to the same {} poses", models.size(), models.front().poses);
+  if (validated) text += fmt::format(" and validated at {} others", models.front().held_back);
+  Table fits(
+      {"model", "parameters", "residuals / noise", "new poses / noise", "uncalibrated", "AICc", "F against", "p", ""},
+      "lrrrrrlrl");
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    const Calibration& c = models[i];
+    const JudgedModel& m = choice.models[i];
+    fits.row({c.variant, std::to_string(c.columns.size()), fmt::format("{:.3g}", c.fit.scale),
+              c.left_out.groups > 0 ? shown_share(c.left_out.estimated) : "",
+              c.left_out.groups > 0 ? shown_share(c.left_out.placed) : "", m.aicc ? fmt::format("{:.1f}", *m.aicc) : "",
+              m.f ? fmt::format("{:.3g} {}", *m.f, m.against) : m.against,
+              m.probability ? (*m.probability < 1e-6 ? "< 1e-6" : fmt::format("{:.2g}", *m.probability)) : "",
+              verdict_of(c)});
+  }
+  text += "\n\n" + fits.text() +
+          (choice.recommended.empty() ? "\nNo model is recommended: " + choice.why + ".\n"
+                                      : "\nRecommended: " + choice.recommended + ", which " + choice.why + ".\n");
+  std::vector<std::string> header = improvement_columns();
+  header.insert(header.begin(), {"error", "model"});
+  Table errors(header, "llr");
+  // Axis by axis, so that the models stand under each other.
+  for (std::size_t i = 0; i < models.front().axes.size(); ++i)
+    for (const Calibration& c : models) {
+      if (i >= c.axes.size()) continue;
+      const AxisImprovement& a = c.axes[i];
+      if (a.poses != (validated ? "held back" : "fitted")) continue;
+      std::vector<std::string> row = improvement_cells(a);
+      row.insert(row.begin(), {a.after.axis, c.variant});
+      errors.row(std::move(row));
+    }
+  return text + fmt::format("\nErrors of the {} poses, before and after\n", validated ? "validation" : "fitted") +
+         errors.text();
 }
 
 }  // namespace posewright

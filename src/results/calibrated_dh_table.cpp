@@ -52,13 +52,11 @@ std::optional<DhTable> dh_table_of(const Problem& problem, const Calibration& ca
 }
 
 std::string dh_table_text(const DhTable& table) {
-  using A = Table::Align;
   std::string text = table.convention == DhConvention::distal
                          ? "Denavit–Hartenberg parameters (distal): Rz(theta) Tz(d) Tx(a) Rx(alpha) Ry(beta)\n"
                          : "Denavit–Hartenberg parameters (modified): Tx(a) Rx(alpha) Ry(beta) Rz(theta) Tz(d)\n";
   text += "The reading adds to theta, of a prismatic joint to d.\n";
-  Table rows({"joint", "", "theta [deg]", "d [mm]", "a [mm]", "alpha [deg]", "beta [deg]"},
-             {A::left, A::left, A::right, A::right, A::right, A::right, A::right});
+  Table rows({"joint", "", "theta [deg]", "d [mm]", "a [mm]", "alpha [deg]", "beta [deg]"}, "llr");
   for (const DhRow& row : table.rows)
     rows.row({row.joint, row.prismatic ? "prismatic" : "", in_deg(row.theta), in_mm(row.d), in_mm(row.a),
               in_deg(row.alpha), row.beta ? in_deg(*row.beta) : ""});

@@ -1,4 +1,3 @@
-#include <cmath>
 
 #include "calibration_parts.hpp"
 #include "document.hpp"
@@ -11,17 +10,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json effects_json(const Calibration& c) {
-  Json list = Json::array();
-  for (const ScoreTest& t : c.effects)
-    list.push_back({{"effect", t.name},
-                    {"gain", t.gain},
-                    {"share", t.share},
-                    {"freedom", t.freedom},
-                    {"statistic", finite_or_null(t.statistic)},
-                    {"probability", t.probability},
-                    {"corrected", t.corrected}});
-  return list;
+Json effect_json(const ScoreTest& t) {
+  return {{"effect", t.name},
+          {"gain", t.gain},
+          {"share", t.share},
+          {"freedom", t.freedom},
+          {"statistic", finite_or_null(t.statistic)},
+          {"probability", t.probability},
+          {"corrected", t.corrected}};
 }
 
 /// A smooth effect that the residuals hold, and what the fit counts.
@@ -42,14 +38,13 @@ Json smooth_json(const Calibration& c) {
 
 Json revisits_json(const Revisits& r) {
   if (!r.larger.possible) return nullptr;
-  Json moved = Json::array();
-  for (const Revisits::Moved& m : r.moved) moved.push_back({{"reading", m.reading}, {"change", m.change}});
+  const auto moved = [](const Revisits::Moved& m) { return Json{{"reading", m.reading}, {"change", m.change}}; };
   return {{"places", r.places},
           {"visits", r.visits},
           {"noise", r.noise},
           {"probability", r.larger.probability},
           {"drift_probability", r.drift.possible ? Json(r.drift.probability) : Json(nullptr)},
-          {"drift", moved}};
+          {"drift", list_json(r.moved, moved)}};
 }
 
 Json visits_json(const std::optional<VisitErrors>& visits) {
@@ -76,11 +71,7 @@ Json interpolation_json(const std::optional<Interpolation>& i) {
           {"gain", i->gain},    {"refused", !i->gains()}};
 }
 
-Json numbers(const std::vector<double>& values) {
-  Json list = Json::array();
-  for (const double value : values) list.push_back(finite_or_null(value));
-  return list;
-}
+Json numbers(const std::vector<double>& values) { return list_json(values, finite_or_null); }
 
 Json parameter_json(const Calibration& c, const CalibratedParameter& p) {
   const bool known = p.estimated && p.given.empty(), interval = known && turned_frame(c, p) == nullptr;
@@ -138,8 +129,6 @@ Json help_json(const std::optional<InstrumentHelp>& help) {
 Json instruments_json(const Calibration& c) {
   Json list = nullptr;
   for (const InstrumentResiduals& one : c.instruments) {
-    Json kinds = Json::array();
-    for (const ResidualSummary& k : one.kinds) kinds.push_back(summary_json(k));
     list.push_back({{"name", one.name},
                     {"poses", one.poses},
                     {"readings", one.readings},
@@ -147,23 +136,19 @@ Json instruments_json(const Calibration& c) {
                     {"chi_square", one.chi_square},
                     {"freedom", one.test.possible ? Json(one.freedom) : Json(nullptr)},
                     {"probability", one.test.possible ? Json(one.test.probability) : Json(nullptr)},
-                    {"residuals", kinds},
+                    {"residuals", list_json(one.kinds, summary_json)},
                     {"others", help_json(one.help)}});
   }
   return list;
 }
 
 Json orientations_json(const Calibration& c) {
-  Json list = Json::array();
-  for (const CalibratedOrientation& o : c.orientations) {
-    Json rows = Json::array();
-    for (int i = 0; i < 3; ++i) rows.push_back({o.covariance(i, 0), o.covariance(i, 1), o.covariance(i, 2)});
-    list.push_back({{"frame", o.frame},
-                    {"rx_ry_rz", {o.angles[0], o.angles[1], o.angles[2]}},
-                    {"covariance", rows},
-                    {"half_width", {o.half_width[0], o.half_width[1], o.half_width[2]}}});
-  }
-  return list;
+  return list_json(c.orientations, [](const CalibratedOrientation& o) {
+    return Json{{"frame", o.frame},
+                {"rx_ry_rz", {o.angles[0], o.angles[1], o.angles[2]}},
+                {"covariance", matrix_json(o.covariance)},
+                {"half_width", {o.half_width[0], o.half_width[1], o.half_width[2]}}};
+  });
 }
 
 Json left_out_json(const LeaveOut& left_out) {
@@ -177,21 +162,11 @@ Json left_out_json(const LeaveOut& left_out) {
           {"why_not", text_or_null(left_out.why_not)}};
 }
 
-Json covariance_json(const Calibration& c) {
-  Json rows = Json::array();
-  for (Eigen::Index i = 0; i < c.fit.covariance.rows(); ++i) {
-    const Eigen::VectorXd row = c.fit.covariance.row(i).transpose();
-    rows.push_back(std::vector<double>(row.begin(), row.end()));
-  }
-  return rows;
-}
-
 /// Begin of every result of the command.
 Json begin_calibration(const char* schema, const Problem& problem, const MeasuredFiles& files) {
   Json json = begin_document(schema, problem);
   json["data"] = files.data.string();
-  json["campaigns"] = Json::array();
-  for (const std::filesystem::path& file : files.campaigns) json["campaigns"].push_back(file.string());
+  json["campaigns"] = list_json(files.campaigns, [](const std::filesystem::path& file) { return file.string(); });
   return json;
 }
 
@@ -218,7 +193,7 @@ Json figures_json(const Calibration& c) {
           {"converged", c.fit.converged},
           {"expected_error", c.expected ? expected_error_json(*c.expected) : Json(nullptr)},
           {"parameters", parameters},
-          {"covariance", {{"columns", c.columns}, {"rows", covariance_json(c)}}},
+          {"covariance", {{"columns", c.columns}, {"rows", matrix_json(c.fit.covariance)}}},
           {"orientations", orientations_json(c)},
           {"frames", frames_json(c)},
           {"leg_points", leg_points_json(c)},
@@ -232,7 +207,7 @@ Json figures_json(const Calibration& c) {
             {"serial_correlation", test_json(c.tests.serial)},
             {"within_pose_correlation", test_json(c.tests.within)},
             {"normality", test_json(c.tests.normality)}}},
-          {"effects_left_out", effects_json(c)},
+          {"effects_left_out", list_json(c.effects, effect_json)},
           {"visit_errors", visits_json(c.visits)},
           {"frame_step", step_json(c.step)},
           {"smooth_effect", smooth_json(c)},
@@ -285,20 +260,19 @@ Json calibration_json(const Problem& problem, const MeasuredFiles& files, const 
 Json models_json(const Problem& problem, const MeasuredFiles& files, const std::vector<Calibration>& models,
                  const ModelChoice& choice) {
   Json json = begin_calibration("posewright/calibrations/1", problem, files);
-  json["recommended"] = choice.recommended.empty() ? Json(nullptr) : Json(choice.recommended);
+  json["recommended"] = text_or_null(choice.recommended);
   json["why"] = choice.why;
   const auto value = [](const std::optional<double>& v) { return v ? finite_or_null(*v) : Json(nullptr); };
-  json["choice"] = Json::array();
-  for (const JudgedModel& m : choice.models)
-    json["choice"].push_back({{"variant", m.variant},
-                              {"parameters", m.parameters},
-                              {"left_out", finite_or_null(m.left_out)},
-                              {"aicc", value(m.aicc)},
-                              {"against", m.against.empty() ? Json(nullptr) : Json(m.against)},
-                              {"f", value(m.f)},
-                              {"probability", value(m.probability)}});
-  json["models"] = Json::array();
-  for (const Calibration& model : models) json["models"].push_back(calibration_json(problem, files, model));
+  json["choice"] = list_json(choice.models, [&](const JudgedModel& m) {
+    return Json{{"variant", m.variant},
+                {"parameters", m.parameters},
+                {"left_out", finite_or_null(m.left_out)},
+                {"aicc", value(m.aicc)},
+                {"against", text_or_null(m.against)},
+                {"f", value(m.f)},
+                {"probability", value(m.probability)}};
+  });
+  json["models"] = list_json(models, [&](const Calibration& model) { return calibration_json(problem, files, model); });
   return json;
 }
 

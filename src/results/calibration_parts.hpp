@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -12,6 +13,9 @@ namespace posewright {
 inline constexpr double seldom = 0.01;
 /// "= 0.12", "below 1e-6": after a p.
 std::string chance_text(double probability);
+
+/// Row by row.
+nlohmann::ordered_json matrix_json(const Eigen::MatrixXd& matrix);
 
 /// Parts of text and JSON: errors by axis before and after, poses that were not fitted, the identification in steps,
 /// constants of a compensator. Text is empty if there is nothing of the kind.

@@ -93,8 +93,7 @@ std::string account_text(const ProgramAccount& program) {
       fmt::format("\n{} ({}): {} compensated, {} kept on purpose, {} not compensated, {} not understood\n",
                   program.file, program.format, program.count(Treatment::compensated), program.count(Treatment::left),
                   program.count(Treatment::not_compensated), program.count(Treatment::not_understood));
-  Table table({"line", "motion or point", "", ""},
-              {Table::Align::right, Table::Align::left, Table::Align::left, Table::Align::left});
+  Table table({"line", "motion or point", "", ""}, "rl");
   std::size_t hidden = 0;
   std::map<Treatment, std::size_t> shown;
   for (const ProgramEntry& entry : program.entries) {
@@ -109,7 +108,6 @@ std::string account_text(const ProgramAccount& program) {
 }  // namespace
 
 std::string compensation_text(const Compensation& c) {
-  using A = Table::Align;
   const std::size_t all = c.compensated + c.failures.size();
   std::string text =
       fmt::format("{} of {} {} compensated, variant {}{}\n\n", c.compensated, all, all == 1 ? "pose is" : "poses are",
@@ -119,15 +117,14 @@ std::string compensation_text(const Compensation& c) {
                 fmt::format("; {} of the programs {} not", open == 1 ? "1 line" : fmt::format("{} lines", open),
                             open == 1 ? "is" : "are"));
   if (c.compensated > 0) {
-    Table errors({"error of the tip, predicted", "RMS", "largest"}, {A::left, A::right, A::right});
+    Table errors({"error of the tip, predicted", "RMS", "largest"});
     errors.row({"position before [mm]", length_in_mm(c.before.position_rms), length_in_mm(c.before.position_largest)});
     errors.row({"position after [mm]", length_in_mm(c.after.position_rms), length_in_mm(c.after.position_largest)});
     errors.row(
         {"orientation before [deg]", angle_in_deg(c.before.rotation_rms), angle_in_deg(c.before.rotation_largest)});
     errors.row({"orientation after [deg]", angle_in_deg(c.after.rotation_rms), angle_in_deg(c.after.rotation_largest)});
     text += errors.text() + "\n";
-    Table changes({c.parallel ? "change of actuator" : "change of joint", "", "RMS", "largest"},
-                  {A::left, A::left, A::right, A::right});
+    Table changes({c.parallel ? "change of actuator" : "change of joint", "", "RMS", "largest"}, "llr");
     for (const AxisChange& axis : c.axes) {
       const auto shown = [&](double value) { return axis.unit == "m" ? length_in_mm(value) : angle_in_deg(value); };
       changes.row({axis.name, axis.unit == "m" ? "mm" : "deg", shown(axis.rms), shown(axis.largest)});

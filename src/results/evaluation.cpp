@@ -6,7 +6,6 @@
 
 #include "posewright/criterion/registry.hpp"
 #include "posewright/formats/json_values.hpp"
-#include "posewright/results/plan.hpp"
 #include "posewright/support/json.hpp"
 #include "posewright/support/table.hpp"
 
@@ -14,7 +13,6 @@ namespace posewright {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Align = Table::Align;
 
 /// Criteria that are variances in m² are shown as what people know, their root in mm.
 std::string shown_score(const CriterionScore& score, bool at_test_poses) {
@@ -24,7 +22,7 @@ std::string shown_score(const CriterionScore& score, bool at_test_poses) {
 }
 
 std::string scores_text(const PoseListEvaluation& e) {
-  Table table({"criterion", "value", "of the best of these candidates"}, {Align::left, Align::right, Align::right});
+  Table table({"criterion", "value", "of the best of these candidates"});
   for (const CriterionScore& score : e.scores)
     table.row({score.name, shown_score(score, e.plan.rho0.has_value()),
                score.efficiency ? "at least " + percent(*score.efficiency) : "no bound"});
@@ -32,7 +30,7 @@ std::string scores_text(const PoseListEvaluation& e) {
 }
 
 std::string poses_text(const Plan& plan) {
-  Table table({"pose", "share of the information", "left without it"}, {Align::right, Align::right, Align::right});
+  Table table({"pose", "share of the information", "left without it"}, "r");
   for (const PlannedPose& pose : plan.poses)
     table.row({std::to_string(pose.id) + (pose.measured ? " (measured)" : ""), percent(pose.contribution),
                pose.measured      ? ""
@@ -56,12 +54,8 @@ std::string add_text(const ListChange& change) {
                                  percent(change.efficiency), accuracy_of(change));
   if (change.added.empty()) return text;
   std::vector<std::string> header{"pose"};
-  std::vector<Align> align{Align::right};
-  for (const NamedValue& v : change.added.front().configuration) {
-    header.push_back(v.name);
-    align.push_back(Align::right);
-  }
-  Table table(header, align);
+  for (const NamedValue& v : change.added.front().configuration) header.push_back(v.name);
+  Table table(header, "r");
   for (const PlannedPose& pose : change.added) {
     std::vector<std::string> cells{std::to_string(pose.id)};
     for (const NamedValue& v : pose.configuration) cells.push_back(shown_value(v.value, v.unit));

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "calibration_parts.hpp"
 #include "posewright/model/placement.hpp"
@@ -35,13 +37,36 @@ std::string fixed(double value) {
   return fmt::format("{:.4f}", std::round(value * digits) / digits + 0.0);
 }
 
+using Json = nlohmann::ordered_json;
+
+struct PointCoordinate {
+  std::string point;
+  std::size_t axis = 0;
+};
+
+/// The point a of a leg on the base or b on the platform that a parameter is a coordinate of: "leg_3.bx".
+std::optional<PointCoordinate> point_coordinate(const std::string& name) {
+  const std::size_t dot = name.find('.');
+  if (!name.starts_with("leg_") || dot == std::string::npos || name.size() != dot + 3) return std::nullopt;
+  const std::size_t axis = std::string("xyz").find(name.back());
+  if (axis == std::string::npos || (name[dot + 1] != 'a' && name[dot + 1] != 'b')) return std::nullopt;
+  return PointCoordinate{name.substr(0, dot + 2), axis};
+}
+
+Json new_point(const std::string& name) {
+  // A planar robot's points have no third parameter.
+  return {{"name", name},
+          {"nominal", {0.0, 0.0, 0.0}},
+          {"calibrated", {0.0, 0.0, 0.0}},
+          {"sigma", {nullptr, nullptr, nullptr}}};
+}
+
 }  // namespace
 
 std::string frames_text(const Calibration& c) {
   if (c.frames.empty()) return "";
-  using A = Table::Align;
   Table table({"frame", "key in the file", "in the frame of", "x [mm]", "y", "z", "roll [deg]", "pitch", "yaw", ""},
-              {A::left, A::left, A::left, A::right, A::right, A::right, A::right, A::right, A::right, A::left});
+              "lllrrrrrrl");
   for (const PlacedFrame& frame : c.frames) {
     std::vector<std::string> cells = {frame.name, frame.key.empty() ? "-" : frame.key, "the " + frame.in};
     for (const double p : frame.X.translation()) cells.push_back(fixed(1e3 * p));
@@ -65,6 +90,23 @@ nlohmann::ordered_json frames_json(const Calibration& c) {
                     {"quaternion_xyzw", {q.x(), q.y(), q.z(), q.w()}}});
   }
   return list;
+}
+
+Json leg_points_json(const Calibration& c) {
+  Json points = Json::array();
+  for (const EstimatedValue& estimated : c.values) {
+    const auto at = point_coordinate(estimated.value.name);
+    if (!at) continue;
+    auto point = std::find_if(points.begin(), points.end(), [&](const Json& p) { return p["name"] == at->point; });
+    if (point == points.end()) {
+      points.push_back(new_point(at->point));
+      point = points.end() - 1;
+    }
+    (*point)["nominal"][at->axis] = estimated.value.nominal;
+    (*point)["calibrated"][at->axis] = estimated.value.value;
+    if (estimated.sigma) (*point)["sigma"][at->axis] = *estimated.sigma;
+  }
+  return points;
 }
 
 }  // namespace posewright

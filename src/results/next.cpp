@@ -2,12 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <numbers>
 
 #include "document.hpp"
 #include "posewright/formats/json_values.hpp"
-#include "posewright/results/plan.hpp"
 #include "posewright/results/stated_error.hpp"
 #include "posewright/support/table.hpp"
 
@@ -99,23 +97,15 @@ std::string requirements_text(const NextPoses& r) {
   const auto shown = [](const std::optional<double>& value, const std::string& unit) {
     return value ? shown_value(*value, unit) : "unknown";
   };
-  using enum Table::Align;
-  Table table({"required", "predicted", "below with 95 %", "at most", "met"}, {left, right, right, right, left});
+  Table table({"required", "predicted", "below with 95 %", "at most", "met"}, "lrrrl");
   for (const NextRequirement& one : r.requirements)
     table.row({one.what, shown(one.expected, one.unit), shown(one.upper, one.unit), shown(one.required, one.unit),
                one.met() ? "yes" : "no"});
   return table.text();
 }
 
-Json point_json(const NextPoint& p) {
-  const auto value = [](const std::optional<double>& v) { return v ? Json(*v) : Json(nullptr); };
-  return {{"poses", p.poses}, {"expected", value(p.expected)}, {"upper", value(p.upper)}};
-}
-
-Json points_json(const std::vector<NextPoint>& points) {
-  Json list = Json::array();
-  for (const NextPoint& p : points) list.push_back(point_json(p));
-  return list;
+Json next_point_json(const NextPoint& p) {
+  return {{"poses", p.poses}, {"expected", value_or_null(p.expected)}, {"upper", value_or_null(p.upper)}};
 }
 
 Json pose_json(const PlannedPose& pose) {
@@ -140,7 +130,7 @@ std::string table_of(const std::vector<PlannedPose>& poses) {
   for (const NamedValue& v : first.configuration) header.push_back(fmt::format("{} [{}]", v.name, unit_of(v.unit)));
   for (const auto& [name, label] : first.choices) header.push_back(shown_choice(name));
   if (first.listed) header.emplace_back("of the list");
-  Table table(header, std::vector<Table::Align>(header.size(), Table::Align::right));
+  Table table(header, "r");
   for (const PlannedPose& pose : poses) {
     std::vector<std::string> cells{std::to_string(pose.id)};
     for (const NamedValue& v : pose.configuration) cells.push_back(shown_coordinate(v));
@@ -215,15 +205,10 @@ std::string proposed_text(const NextPoses& r) {
                      r.candidates, table_of(r.poses));
 }
 
-Json proposed_json(const NextPoses& r) {
-  Json poses = Json::array();
-  for (const PlannedPose& pose : r.poses) poses.push_back(pose_json(pose));
-  return poses;
-}
+Json proposed_json(const NextPoses& r) { return list_json(r.poses, pose_json); }
 
 Json next_json(const Problem& problem, std::uint64_t seed, const std::string& data, const NextPoses& r,
                const std::vector<NextPoint>& history) {
-  const auto optional = [](const auto& value) { return value ? Json(*value) : Json(nullptr); };
   Json json = begin_document("posewright/next/1", problem, seed);
   json["data"] = text_or_null(data);
   json["variant"] = r.variant;
@@ -232,27 +217,28 @@ Json next_json(const Problem& problem, std::uint64_t seed, const std::string& da
   json["stop"] = r.verdict == NextVerdict::reached || r.verdict == NextVerdict::flat;
   json["reason"] = next_reason(r);
   json["measured"] = {{"poses", r.measured}, {"readings", r.readings}};
-  json["parameters"] = {{"count", r.parameters}, {"told", r.told}, {"smallest_number_of_poses", optional(r.smallest)}};
+  json["parameters"] = {
+      {"count", r.parameters}, {"told", r.told}, {"smallest_number_of_poses", value_or_null(r.smallest)}};
   json["fitted"] = r.fitted;
   json["noise"] = r.fitted ? Json{{"scale", r.noise}, {"freedom", r.freedom}} : Json(nullptr);
   json["unmodelled"] = r.effect ? Json{{"size", r.effect->size}, {"length", r.effect->length}} : Json(nullptr);
-  json["unmodelled_below"] = optional(r.effect_below);
+  json["unmodelled_below"] = value_or_null(r.effect_below);
   json["expected_error"] = r.expected ? expected_error_json(*r.expected) : Json(nullptr);
   json["places"] = {{"count", r.places}, {"test_poses", r.places_stated}};
-  json["required"] = optional(r.required);
-  json["requirements"] = Json::array();
-  for (const NextRequirement& one : r.requirements)
-    json["requirements"].push_back({{"what", one.what},
-                                    {"unit", one.unit},
-                                    {"required", one.required},
-                                    {"expected", optional(one.expected)},
-                                    {"upper", optional(one.upper)},
-                                    {"met", one.met()}});
+  json["required"] = value_or_null(r.required);
+  json["requirements"] = list_json(r.requirements, [](const NextRequirement& one) {
+    return Json{{"what", one.what},
+                {"unit", one.unit},
+                {"required", one.required},
+                {"expected", value_or_null(one.expected)},
+                {"upper", value_or_null(one.upper)},
+                {"met", one.met()}};
+  });
   json["confidence"] = 0.95;
-  json["curve"] = points_json(r.curve);
-  json["ahead"] = points_json(r.ahead);
-  json["with_three_more"] = r.with_three ? point_json(*r.with_three) : Json(nullptr);
-  json["history"] = points_json(history);
+  json["curve"] = list_json(r.curve, next_point_json);
+  json["ahead"] = list_json(r.ahead, next_point_json);
+  json["with_three_more"] = r.with_three ? next_point_json(*r.with_three) : Json(nullptr);
+  json["history"] = list_json(history, next_point_json);
   json["poses"] = proposed_json(r);
   json["estimates"] = Json::array();
   for (const EstimatedValue& e : r.estimates)

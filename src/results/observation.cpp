@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "document.hpp"
+#include "posewright/formats/json_values.hpp"
 #include "posewright/support/table.hpp"
 
 namespace posewright {
@@ -31,7 +31,7 @@ std::string share_text(double share) {
 }
 
 std::string equations(const std::vector<Dependency>& dependencies, const std::vector<Parameter>& parameters) {
-  Table table({"not explained", ""}, {Table::Align::right, Table::Align::left});
+  Table table({"not explained", ""}, "rl");
   for (const Dependency& d : dependencies)
     table.row({d.remainder < exact ? "exact" : share_text(d.remainder), describe(d, parameters)});
   return table.text();
@@ -94,9 +94,7 @@ std::string practical_text(const Observation& o) {
   const PracticalIdentifiability& p = *o.practical;
   std::string text = near_text(o);
   text += fmt::format("Worth identifying, with {} poses chosen well:\n", p.poses);
-  using A = Table::Align;
-  Table table({"parameter", "tolerance", "σ", "σ/tolerance", "its own", "", "most like"},
-              {A::left, A::right, A::right, A::right, A::right, A::left, A::left});
+  Table table({"parameter", "tolerance", "σ", "σ/tolerance", "its own", "", "most like"}, "lrrrrl");
   for (std::size_t j = 0; j < o.kept.size(); ++j) {
     const Parameter& label = o.kept[j];
     const auto k = Eigen::Index(j);
@@ -215,8 +213,7 @@ Json observation_json(const Observation& o) {
 
 Json observations_json(const Problem& problem, std::uint64_t seed, const std::vector<Observation>& observations) {
   Json json = begin_document("posewright/observation/1", problem, seed);
-  json["variants"] = Json::array();
-  for (const Observation& o : observations) json["variants"].push_back(observation_json(o));
+  json["variants"] = list_json(observations, observation_json);
   return json;
 }
 

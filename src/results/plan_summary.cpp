@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "nearest.hpp"
+#include "posewright/formats/format_text.hpp"
 #include "posewright/results/discrimination.hpp"
 #include "posewright/results/plan.hpp"
 #include "posewright/results/stated_error.hpp"
@@ -87,9 +88,7 @@ std::string certificate_text(const Plan& plan) {
 
 std::string variants_text(const Plan& plan) {
   if (plan.variants.empty()) return {};
-  using A = Table::Align;
-  Table table({"variant", "weight", "log det", "bound", "efficiency"},
-              {A::left, A::right, A::right, A::right, A::right});
+  Table table({"variant", "weight", "log det", "bound", "efficiency"});
   for (const VariantResult& v : plan.variants)
     table.row({v.name, fmt::format("{:g}", v.weight), fmt::format("{:.4f}", v.log_det), fmt::format("{:.4f}", v.bound),
                percent(v.efficiency)});
@@ -98,10 +97,8 @@ std::string variants_text(const Plan& plan) {
 
 std::string instruments_text(const Plan& plan) {
   if (plan.instruments.empty()) return {};
-  using A = Table::Align;
   Table table({"instrument", "poses", "set-up and readings", "share of the information", "left without it",
-               "error to expect without it"},
-              {A::left, A::right, A::right, A::right, A::right, A::right});
+               "error to expect without it"});
   for (const InstrumentWorth& worth : plan.instruments)
     table.row({worth.name, std::to_string(worth.poses), seconds_text(worth.setup + worth.reading), percent(worth.share),
                worth.without > 0 ? percent(worth.without) : "not identifiable",
@@ -112,9 +109,7 @@ std::string instruments_text(const Plan& plan) {
 
 std::string curve_text(const Plan& plan) {
   if (plan.curve.empty()) return {};
-  using A = Table::Align;
-  Table table({"poses", "log det", "predicted error", "axis/required", "σ/required", "enough"},
-              {A::right, A::right, A::right, A::right, A::right, A::left});
+  Table table({"poses", "log det", "predicted error", "axis/required", "σ/required", "enough"}, "rrrrrl");
   for (const CurvePoint& point : plan.curve)
     table.row({std::to_string(point.poses), fmt::format("{:.4f}", point.log_det),
                point.rho0 ? shown_value(*point.rho0, "m") : "",
@@ -262,12 +257,10 @@ std::string verdict(const PlannedParameter& p) {
 }
 
 std::string parameter_table(const Plan& plan) {
-  using A = Table::Align;
   const auto name = [](const PlannedParameter& p) {
     return p.variant.empty() ? p.label.name : p.variant + ": " + p.label.name;
   };
-  Table table({"parameter", "nominal", "tolerance", "predicted σ", "σ/tolerance", ""},
-              {A::left, A::right, A::right, A::right, A::right, A::left});
+  Table table({"parameter", "nominal", "tolerance", "predicted σ", "σ/tolerance", ""}, "lrrrrl");
   for (const PlannedParameter& p : plan.parameters)
     if (p.sigma)
       table.row({name(p), shown_value(p.label.nominal, p.label.unit), shown_value(p.label.tolerance, p.label.unit),
@@ -287,8 +280,7 @@ std::string rejection_table(const PlanStatistics& s) {
   if (s.rejected.empty()) return {};
   std::vector<std::pair<std::string, long>> rows = s.rejected;
   std::stable_sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
-  using A = Table::Align;
-  Table table({"rejected because", s.list.empty() ? "draws" : "candidates", "share"}, {A::left, A::right, A::right});
+  Table table({"rejected because", s.list.empty() ? "draws" : "candidates", "share"});
   for (const auto& [reason, count] : rows)
     table.row({reason, std::to_string(count), fmt::format("{:.1f} %", 100.0 * double(count) / double(s.drawn))});
   return table.text();
@@ -353,6 +345,25 @@ std::string plan_summary(const Plan& plan) {
          (plan.discrimination ? discrimination_text(*plan.discrimination, plan.variant) : "") + variants_text(plan) +
          instruments_text(plan) + curve_text(plan) + "\n" + parameter_table(plan) + dropped_text(plan) + "\n" +
          candidates_text(plan) + stages_text(plan) + indices_text(plan) + search_text(plan);
+}
+
+std::string poses_csv(const Plan& plan) {
+  if (plan.poses.empty() || plan.poses.front().configuration.empty()) return {};
+  std::string text = "pose";
+  const PlannedPose& first = plan.poses.front();
+  for (const NamedValue& v : first.configuration) text += fmt::format(",{} [{}]", v.name, v.unit);
+  for (const NamedValue& v : first.actuators) text += fmt::format(",{} [{}]", v.name, v.unit);
+  for (const auto& [name, label] : first.choices) text += "," + formats::csv_cell(name);
+  text += "\n";
+  for (const PlannedPose& pose : plan.poses) {
+    if (pose.measured) continue;
+    text += std::to_string(pose.id);
+    for (const NamedValue& v : pose.configuration) text += fmt::format(",{}", v.value);
+    for (const NamedValue& v : pose.actuators) text += fmt::format(",{}", v.value);
+    for (const auto& [name, label] : pose.choices) text += "," + formats::csv_cell(label);
+    text += "\n";
+  }
+  return text;
 }
 
 }  // namespace posewright

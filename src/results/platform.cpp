@@ -1,16 +1,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "calibration_parts.hpp"
+#include "posewright/formats/json_values.hpp"
 #include "posewright/support/distributions.hpp"
 #include "posewright/support/table.hpp"
 
 namespace posewright {
 namespace {
-
-using Align = Table::Align;
 using Json = nlohmann::ordered_json;
 
 Json list_of(const Eigen::Ref<const Eigen::VectorXd>& values) {
@@ -54,9 +52,7 @@ std::string platform_text(const PlatformDeformation& p) {
         fmt::format("; chi-square {:.4g} for {} degrees of freedom (p {}): {}", p.chi_square, p.freedom,
                     chance_text(probability), probability < seldom ? "NOT RIGID" : "rigid as far as the noise shows");
   }
-  Table table({"joint centre", "largest Δb_z", "σ of x", "y", "z", "κ", "σ", "left by κ", "left by K"},
-              {Align::left, Align::right, Align::right, Align::right, Align::right, Align::right, Align::right,
-               Align::right, Align::right});
+  Table table({"joint centre", "largest Δb_z", "σ of x", "y", "z", "κ", "σ", "left by κ", "left by K"});
   for (std::size_t i = 0; i < p.joints.size(); ++i) {
     const JointDeformation& j = p.joints[i];
     table.row({fmt::format("leg_{}", i + 1), shown_value(j.largest, "m"), shown_value(j.spread.x(), "m"),
@@ -73,6 +69,10 @@ std::string platform_text(const PlatformDeformation& p) {
   return text;
 }
 
+Json matrix_json(const Eigen::MatrixXd& matrix) {
+  return list_json(matrix.rowwise(), [](const auto& row) { return list_of(row.transpose()); });
+}
+
 Json platform_json(const PlatformDeformation& p) {
   Json joints = Json::array(), images = Json::array();
   for (const JointDeformation& j : p.joints)
@@ -85,9 +85,9 @@ Json platform_json(const PlatformDeformation& p) {
                       {"left_by_kappa", j.left_by_kappa},
                       {"left_by_K", j.left_by_K}});
   for (std::size_t i = 0; i < p.ids.size(); ++i) {
-    Json moved = Json::array();
-    for (Eigen::Index k = 0; k < p.displacements[i].cols(); ++k) moved.push_back(list_of(p.displacements[i].col(k)));
-    images.push_back({{"id", p.ids[i]}, {"actuators", list_of(p.actuators[i])}, {"displacements", moved}});
+    images.push_back({{"id", p.ids[i]},
+                      {"actuators", list_of(p.actuators[i])},
+                      {"displacements", matrix_json(p.displacements[i].transpose())}});
   }
   return {{"chi_square", p.chi_square}, {"freedom", p.freedom}, {"rms", p.rms}, {"joints", joints}, {"images", images}};
 }

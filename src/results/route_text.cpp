@@ -63,20 +63,12 @@ std::string conditions_text(const PoseChoices& choices) {
 }
 
 std::string steps_table(const Route& route) {
-  using A = Table::Align;
   std::vector<std::string> header = {"", "pose"};
-  std::vector<A> align = {A::right, A::right};
-  for (auto key = choice_keys.rbegin(); key != choice_keys.rend(); ++key) {
-    header.emplace_back(key->shown);
-    align.push_back(A::left);
-  }
-  for (const char* name : {"motion", "via", "found by", "elapsed", "targets seen"}) {
-    header.emplace_back(name);
-    align.push_back(header.back() == "found by" ? A::left : A::right);
-  }
+  for (auto key = choice_keys.rbegin(); key != choice_keys.rend(); ++key) header.emplace_back(key->shown);
+  header.insert(header.end(), {"motion", "via", "found by", "elapsed", "targets seen"});
   const bool conditions = !route.poses.empty() && !conditions_text(route.poses.front().choices).empty();
-  if (conditions) header.emplace_back("conditions"), align.push_back(A::left);
-  Table table(std::move(header), std::move(align));
+  if (conditions) header.emplace_back("conditions");
+  Table table(std::move(header), "rr" + std::string(choice_keys.size(), 'l') + "rrlrrl");
   double elapsed = 0;
   for (std::size_t k = 0; k < route.poses.size(); ++k) {
     const PlannedPose& pose = route.poses[k];

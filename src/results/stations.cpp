@@ -111,11 +111,9 @@ std::string ended_early(const std::vector<StationRank>& ranks) {
 }  // namespace
 
 std::string stations_text(const std::vector<StationRank>& ranks) {
-  using A = Table::Align;
-  Table table(
-      {"", "station", "place [m]", "planned", "parameters", "criterion", "σ", "feasible", "predicted error",
-       "from noise alone", "most rejected by"},
-      {A::right, A::right, A::left, A::left, A::left, A::right, A::right, A::right, A::right, A::right, A::left});
+  Table table({"", "station", "place [m]", "planned", "parameters", "criterion", "σ", "feasible", "predicted error",
+               "from noise alone", "most rejected by"},
+              "rrlllrrrrrl");
   int place = 0;
   for (const StationRank& rank : ranks) {
     if (!rank.why_not.empty()) continue;

@@ -51,7 +51,8 @@ std::string searched_percent(double share) {
 
 std::string at_most_percent(double share) { return fmt::format("{:.1f} %", std::ceil(share * 1e3) / 10); }
 
-Table::Table(std::vector<std::string> header, std::vector<Align> align) : align_(std::move(align)) {
+Table::Table(std::vector<std::string> header, std::string align) : align_(std::move(align)) {
+  align_.resize(header.size(), align_.back());
   rows_.push_back(std::move(header));
 }
 
@@ -74,7 +75,7 @@ std::string Table::markdown() const {
     text += '\n';
     if (&row != &rows_.front()) continue;
     text += '|';
-    for (const Align align : align_) text += align == Align::left ? " --- |" : " ---: |";
+    for (const char align : align_) text += align == 'l' ? " --- |" : " ---: |";
     text += '\n';
   }
   return text + '\n';
@@ -89,7 +90,7 @@ std::string Table::aligned() const {
     std::string line;
     for (std::size_t c = 0; c < row.size(); ++c) {
       const std::string pad(widths[c] - width(row[c]), ' ');
-      line += "  " + (align_[c] == Align::left ? row[c] + pad : pad + row[c]);
+      line += "  " + (align_[c] == 'l' ? row[c] + pad : pad + row[c]);
     }
     line.erase(line.find_last_not_of(' ') + 1);
     text += line + "\n";

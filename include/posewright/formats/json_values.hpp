@@ -23,6 +23,14 @@ nlohmann::ordered_json value_or_null(const std::optional<T>& value) {
   return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
 }
 
+/// entry(item) of each item of a list.
+template <class List, class Entry>
+nlohmann::ordered_json list_json(const List& list, const Entry& entry) {
+  auto json = nlohmann::ordered_json::array();
+  for (const auto& item : list) json.push_back(entry(item));
+  return json;
+}
+
 /// Adds the choices of a pose: keys of their own, then `conditions`; a temperature is a number.
 /// @param nulls  whether keys without a label are null; else they are left out
 void write_choices(nlohmann::ordered_json& pose, const PoseChoices& choices, bool nulls = true);

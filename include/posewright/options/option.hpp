@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <functional>
 #include <initializer_list>
 #include <optional>
@@ -114,6 +115,27 @@ class OptionTable {
 
   std::vector<Row> rows_;
 };
+
+/// The table that `fill` fills at the first call.
+template <class Options, class Fill>
+const OptionTable<Options>& table_filled_by(const Fill& fill) {
+  static const auto table = [&] {
+    OptionTable<Options> empty;
+    fill(empty);
+    return empty;
+  }();
+  return table;
+}
+
+/// Seed and number of threads of a task's options, where its struct has them.
+template <class Options>
+void set_run(Options& options, std::uint64_t seed, int threads) {
+  if constexpr (requires { options.options.run; }) set_run(options.options.run, seed, threads);
+  else if constexpr (requires { options.run; }) set_run(options.run, seed, threads);
+  else if constexpr (requires { options.experiment; }) set_run(options.experiment, seed, threads);
+  if constexpr (requires { options.seed; }) options.seed = seed;
+  if constexpr (requires { options.threads; }) options.threads = threads;
+}
 
 template <class Options>
 std::vector<OptionRow> rows_of(const OptionTable<Options>& table) {

@@ -13,8 +13,8 @@ void set_table_layout(TableLayout layout);
 /// Aligned text table; widths count characters, not bytes, so that σ and µ line up.
 class Table {
  public:
-  enum class Align { left, right };
-  Table(std::vector<std::string> header, std::vector<Align> align);
+  /// @param align  l or r for left and right: one letter a column, the last one of all columns from there on
+  explicit Table(std::vector<std::string> header, std::string align = "lr");
   void row(std::vector<std::string> cells);
   /// In the layout of the process.
   std::string text() const;
@@ -24,7 +24,7 @@ class Table {
   std::string markdown() const;
 
   std::vector<std::vector<std::string>> rows_;
-  std::vector<Align> align_;
+  std::string align_;
 };
 
 /// "97.86 %" for 0.97869: rounded down, because what is stated as reached must be.

@@ -1,9 +1,12 @@
+#include "posewright/results/comparison.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "posewright/results/comparison.hpp"
+#include "document.hpp"
+#include "posewright/formats/json_values.hpp"
 #include "posewright/results/discrimination.hpp"
 #include "posewright/results/stated_error.hpp"
 #include "posewright/support/table.hpp"
@@ -11,7 +14,92 @@
 namespace posewright {
 namespace {
 
-using Align = Table::Align;
+using Json = nlohmann::ordered_json;
+
+Json variant_json(const ComparedVariant& v) {
+  return {{"name", v.name},
+          {"interest", v.interest},
+          {"nuisance", v.nuisance},
+          {"dropped", v.dropped},
+          {"why_not", text_or_null(v.why_not)}};
+}
+
+Json score_json(const PlanScore& s) {
+  const bool judged = s.why_not.empty();
+  const auto figure = [&](double value) { return judged ? Json(value) : Json(nullptr); };
+  return {{"plan", s.plan},
+          {"variant", s.variant},
+          {"why_not", text_or_null(s.why_not)},
+          {"infeasible_poses", s.infeasible},
+          {"infeasible_because", text_or_null(s.infeasible_because)},
+          {"efficiency", value_or_null(s.efficiency)},
+          {"log_det", figure(s.log_det)},
+          {"condition", figure(s.condition)},
+          {"largest_sigma_per_tolerance", figure(s.worst)},
+          {"largest_sigma_of", text_or_null(s.worst_parameter)},
+          {"mean_sigma_per_tolerance", figure(s.mean)},
+          {"rho0", value_or_null(s.rho0)},
+          {"expected_error", s.expected ? expected_error_json(*s.expected) : Json(nullptr)}};
+}
+
+Json alias_json(const VariantAlias& a) {
+  Json sources = Json::array(), parameters = Json::array();
+  for (const AliasSource& s : a.sources)
+    sources.push_back({{"name", s.label.name}, {"unit", s.label.unit}, {"nominal", s.shift}, {"tolerance", s.spread}});
+  for (const AliasedParameter& p : a.parameters)
+    parameters.push_back({{"name", p.label.name},
+                          {"unit", p.label.unit},
+                          {"role", p.label.role == Role::nuisance ? "nuisance" : "interest"},
+                          {"tolerance", p.label.tolerance},
+                          {"sigma", p.sigma},
+                          {"bias_by_nominal", p.shift},
+                          {"bias_by_nominal_fitted", value_or_null(p.fitted)},
+                          {"bias_by_tolerance", p.spread}});
+  const auto at_places = [&](double value) { return a.rho0 ? Json(value) : Json(nullptr); };
+  return {{"fitted", a.fitted},
+          {"truth", a.truth},
+          {"plan", a.plan},
+          {"why_not", text_or_null(a.why_not)},
+          {"sources", sources},
+          {"parameters", parameters},
+          {"discrimination", a.test ? discrimination_json(*a.test) : Json(nullptr)},
+          {"rho0", value_or_null(a.rho0)},
+          {"rho0_by_nominal", at_places(a.rho0_shift)},
+          {"rho0_by_tolerance", at_places(a.rho0_spread)}};
+}
+
+Json worth_json(const ExtraWorth& w) {
+  return {{"with", w.with},
+          {"without", w.without},
+          {"plan_with", w.plan_with},
+          {"plan_without", w.plan_without},
+          {"extra", w.extra},
+          {"measure", w.measure == ExtraWorth::Measure::test_poses ? "test_poses" : "shared_parameters"},
+          {"error_with", value_or_null(w.error_with)},
+          {"noise_without", value_or_null(w.noise_without)},
+          {"bias_without", value_or_null(w.bias_without)},
+          {"error_without", value_or_null(w.error_without())},
+          {"worth", value_or_null(w.worth())},
+          {"why_not", text_or_null(w.why_not)},
+          {"text", worth_text(w)}};
+}
+
+Json figures_json(const Comparison& c) {
+  return {
+      {"criterion", text_or_null(c.criterion)},
+      {"method", text_or_null(c.method)},
+      {"candidates", c.candidates},
+      {"variants", list_json(c.variants, variant_json)},
+      {"plans", list_json(c.plans,
+                          [](const ComparedPlan& p) {
+                            return Json{{"name", p.name}, {"searched_for", text_or_null(p.own_of)}, {"poses", p.poses}};
+                          })},
+      {"scores", list_json(c.scores, score_json)},
+      {"aliases", list_json(c.aliases, alias_json)},
+      {"worth", list_json(c.worths, worth_json)},
+      {"interrupted", c.interrupted},
+      {"not_planned", c.not_planned}};
+}
 
 // Names of extra parameters that a sentence lists before it counts the rest.
 constexpr std::size_t names_shown = 3;
@@ -36,7 +124,7 @@ std::string ended_early(const Comparison& c) {
 }
 
 std::string variants_text(const Comparison& c) {
-  Table table({"variant", "parameters", "nuisance", ""}, {Align::left, Align::right, Align::right, Align::left});
+  Table table({"variant", "parameters", "nuisance", ""}, "lrrl");
   std::string reasons;
   for (const ComparedVariant& v : c.variants) {
     const bool known = v.why_not.empty();
@@ -50,12 +138,8 @@ std::string variants_text(const Comparison& c) {
 /// Plans down, variants across.
 std::string efficiency_text(const Comparison& c) {
   std::vector<std::string> header{"plan", "poses"};
-  std::vector<Align> align{Align::left, Align::right};
-  for (const ComparedVariant& v : c.variants) {
-    header.push_back(v.name);
-    align.push_back(Align::right);
-  }
-  Table table(header, align);
+  for (const ComparedVariant& v : c.variants) header.push_back(v.name);
+  Table table(header);
   std::string notes;
   auto score = c.scores.begin();
   for (const ComparedPlan& plan : c.plans) {
@@ -77,13 +161,8 @@ std::string efficiency_text(const Comparison& c) {
 std::string scores_text(const Comparison& c) {
   const bool places = std::any_of(c.scores.begin(), c.scores.end(), [](const PlanScore& s) { return s.rho0; });
   std::vector<std::string> header{"plan", "variant", "log det", "largest σ/tolerance", "", "mean σ/tolerance", "σ1/σm"};
-  std::vector<Align> align{Align::left, Align::left,  Align::right, Align::right,
-                           Align::left, Align::right, Align::right};
-  if (places) {
-    header.push_back("error at the test poses");
-    align.push_back(Align::right);
-  }
-  Table table(header, align);
+  if (places) header.push_back("error at the test poses");
+  Table table(header, "llrrlr");
   for (const PlanScore& s : c.scores) {
     if (!s.why_not.empty()) continue;
     std::vector<std::string> cells{s.plan,
@@ -101,8 +180,7 @@ std::string scores_text(const Comparison& c) {
 
 /// Errors to expect of the plans.
 std::string expected_text(const Comparison& c) {
-  Table table({"plan", "variant", "from noise alone", "with an effect", "effect"},
-              {Align::left, Align::left, Align::right, Align::right, Align::right});
+  Table table({"plan", "variant", "from noise alone", "with an effect", "effect"}, "llr");
   const ExpectedError* any = nullptr;
   for (const PlanScore& s : c.scores) {
     if (!s.expected) continue;
@@ -124,8 +202,7 @@ bool has_shift(const VariantAlias& a) {
 
 /// One line for each pair whose nominal values differ.
 std::string alias_lines(const Comparison& c) {
-  Table table({"fitted", "truth", "plan", "worst off", "bias", "bias/σ", "at the test poses"},
-              {Align::left, Align::left, Align::left, Align::left, Align::right, Align::right, Align::right});
+  Table table({"fitted", "truth", "plan", "worst off", "bias", "bias/σ", "at the test poses"}, "llllr");
   bool any = false;
   for (const VariantAlias& a : c.aliases) {
     if (!has_shift(a)) continue;
@@ -152,10 +229,8 @@ std::string alias_in_full(const VariantAlias& a) {
   text += fmt::format(
       "{} nominal values differ, {} parameters are not fitted and one tolerance off each\n",
       std::count_if(a.sources.begin(), a.sources.end(), [](const AliasSource& s) { return s.shift != 0; }), spreads);
-  Table table(
-      {"parameter", "bias by nominal", "fitted", "by tolerance", "predicted σ", "tolerance", "bias/σ",
-       "bias/tolerance"},
-      {Align::left, Align::right, Align::right, Align::right, Align::right, Align::right, Align::right, Align::right});
+  Table table({"parameter", "bias by nominal", "fitted", "by tolerance", "predicted σ", "tolerance", "bias/σ",
+               "bias/tolerance"});
   for (const AliasedParameter& p : a.parameters) {
     const double size = std::hypot(p.shift, p.spread);
     table.row({p.label.name + (p.label.role == Role::nuisance ? " (nuisance)" : ""), shown_value(p.shift, p.label.unit),
@@ -180,6 +255,12 @@ std::string names_of(const std::vector<std::string>& extra) {
 }
 
 }  // namespace
+
+Json comparison_json(const Problem& problem, std::uint64_t seed, const Comparison& comparison) {
+  Json json = begin_document("posewright/comparison/1", problem, seed);
+  json.update(figures_json(comparison));
+  return json;
+}
 
 std::string worth_text(const ExtraWorth& w) {
   const bool places = w.measure == ExtraWorth::Measure::test_poses;

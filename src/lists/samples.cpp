@@ -4,7 +4,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 
 #include "orientation_columns.hpp"
 #include "posewright/controller/yaml_document.hpp"

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <map>
 #include <memory>
-#include <numeric>
 #include <utility>
 
 #include "posewright/cell/cell.hpp"
@@ -13,7 +12,6 @@
 #include "posewright/model/placement.hpp"
 #include "posewright/problem/design_keys.hpp"
 #include "posewright/results/stated_error.hpp"
-#include "posewright/study/study.hpp"
 #include "posewright/support/bytes.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
@@ -216,26 +214,21 @@ class StationRanking {
           trials.back().push_back(i);
         }
       ranks = quick_of(trials);
-      std::vector<std::size_t> order(ranks.size());
-      std::iota(order.begin(), order.end(), std::size_t(0));
-      chosen = trials[*std::min_element(order.begin(), order.end(),
-                                        [&](auto a, auto b) { return better(ranks[a], ranks[b]); })];
+      chosen = trials[std::size_t(std::ranges::min_element(ranks, better) - ranks.begin())];
     }
     return ranks;
   }
 
   std::vector<Set> all_sets(std::size_t choose) const {
     std::vector<Set> sets;
-    Set set(choose);
-    std::iota(set.begin(), set.end(), std::size_t(0));
-    while (true) {
-      sets.push_back(set);
-      std::size_t k = choose;
-      while (k > 0 && set[k - 1] == places_.size() - choose + k - 1) --k;
-      if (k == 0) return sets;
-      ++set[k - 1];
-      for (std::size_t i = k; i < choose; ++i) set[i] = set[i - 1] + 1;
-    }
+    std::vector<bool> chosen(places_.size(), false);
+    std::fill_n(chosen.begin(), choose, true);
+    do {
+      sets.emplace_back();
+      for (std::size_t i = 0; i < chosen.size(); ++i)
+        if (chosen[i]) sets.back().push_back(i);
+    } while (std::prev_permutation(chosen.begin(), chosen.end()));
+    return sets;
   }
 
   std::vector<StationRank> quick_of(const std::vector<Set>& sets) {

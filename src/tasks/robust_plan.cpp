@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "posewright/study/drawn_robots.hpp"
 #include "posewright/study/judgement.hpp"

@@ -7,10 +7,7 @@
 #include <utility>
 
 #include "fill_plan.hpp"
-#include "posewright/blocks/read_blocks.hpp"
 #include "posewright/criterion/registry.hpp"
-#include "posewright/planning/evaluate.hpp"
-#include "posewright/search/design_measure.hpp"
 #include "posewright/search/search.hpp"
 
 namespace posewright {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "posewright/model/model_factory.hpp"
 #include "posewright/study/accuracy_configurations.hpp"
 #include "posewright/study/accuracy_points.hpp"
 #include "posewright/support/error.hpp"

@@ -4,7 +4,6 @@
 #include <string>
 
 #include "posewright/calibration/compensator_constants.hpp"
-#include "posewright/problem/problem.hpp"
 
 namespace posewright {
 

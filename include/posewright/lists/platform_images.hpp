@@ -3,9 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "posewright/calibration/platform_deformation.hpp"
 #include "posewright/model/identification_model.hpp"
-#include "posewright/problem/problem.hpp"
 
 namespace posewright {
 

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "posewright/controller/controller_settings.hpp"
-#include "posewright/formats/pose_formats.hpp"
 #include "posewright/lists/pose_list.hpp"
 #include "posewright/model/arm_inverse.hpp"
 #include "posewright/programs/program_document.hpp"

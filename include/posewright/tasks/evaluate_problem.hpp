@@ -1,9 +1,6 @@
 #pragma once
 
-#include <filesystem>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "posewright/lists/pose_list.hpp"
 #include "posewright/problem/problem.hpp"

@@ -4,8 +4,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "posewright/lists/pose_list.hpp"
 #include "posewright/problem/problem.hpp"

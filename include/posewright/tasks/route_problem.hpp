@@ -1,9 +1,7 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <optional>
-#include <string>
 
 #include "posewright/lists/pose_list.hpp"
 #include "posewright/problem/problem.hpp"

@@ -1,9 +1,5 @@
 #pragma once
 
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "posewright/lists/pose_list.hpp"
 #include "posewright/problem/problem.hpp"
 #include "posewright/results/simulation.hpp"

@@ -10,10 +10,9 @@
 #include "calibrated_error.hpp"
 #include "calibration_columns.hpp"
 #include "calibration_data.hpp"
-#include "calibration_notes.hpp"
+#include "calibration_effects.hpp"
 #include "calibration_profiles.hpp"
 #include "calibration_verdict.hpp"
-#include "effects_left_out.hpp"
 #include "placed_campaigns.hpp"
 #include "posewright/calibration/frame_limits.hpp"
 #include "posewright/calibration/frame_shift.hpp"
@@ -24,10 +23,8 @@
 #include "posewright/model/elastic_chain.hpp"
 #include "posewright/model/instrument_choice.hpp"
 #include "posewright/model/model_factory.hpp"
-#include "posewright/study/columns.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/table.hpp"
-#include "remounted_tool.hpp"
 
 namespace posewright {
 namespace {
@@ -84,15 +81,15 @@ class CalibrationRun {
     result_.weakest = weakest_combination(result_.fit, columns_);
     if (result_.fit.converged)
       result_.left_out = leave_out(*model_, columns_, fitted_, fit_options, placed_, result_.fit, monitor_);
-    if (options_.interpolate) interpolate(fit_options);
+    if (options_.interpolate) result_.interpolation = interpolation_of(spec_, poses(), fit_options.effect, result_);
     judge_noise();
     judge_instruments(fit_options);
     note(note_of_step(result_.step));
     note_visits();
-    judge_calibration({*model_, columns_, fitted_, held_back_, placed_}, result_);
+    judge_calibration(poses(), result_);
     judge_frame();
     fill_parameters();
-    fill_accuracy({*model_, columns_, fitted_, held_back_, placed_}, problem_.design.require, result_);
+    fill_accuracy(poses(), problem_.design.require, result_);
     expect();
     if (const auto* arm = std::get_if<SerialArmSpec>(&problem_.robot); arm != nullptr && arm->elastostatic)
       fill_compensator(*arm->elastostatic, result_);
@@ -102,6 +99,8 @@ class CalibrationRun {
   }
 
  private:
+  CalibratedPoses poses() const { return {*model_, columns_, fitted_, held_back_, placed_}; }
+
   void expect() {
     // Nothing else depends on a workspace that cannot be drawn from.
     if (!campaigns_.empty()) return;
@@ -142,7 +141,9 @@ class CalibrationRun {
     fit_readings(fit_options);
     test_estimate();
     if (count_visits(fit_options)) test_estimate();
-    if (campaigns_.empty()) result_.step = frame_step(*model_, columns_, fitted_, result_.fit, frames_that_may_move());
+    if (campaigns_.empty())
+      result_.step =
+          frame_step(*model_, columns_, fitted_, result_.fit, frames_that_may_move(problem_.measurement, *model_));
     result_.revisits = revisits(*model_, fitted_, result_.fit.correction);
     allow_for_unmodelled(fit_options);
     result_.curvature = curvature(*model_, columns_, fitted_, result_.fit);
@@ -224,16 +225,6 @@ class CalibrationRun {
                       "more; the stated value is kept",
                       *contradicted_visits_));
     note(note_of_visits(result_.visits));
-  }
-
-  /// Base and what is on the tip, as effects.
-  std::vector<EffectToTest> frames_that_may_move() const {
-    std::vector<EffectToTest> frames;
-    for (const auto& [name, moved] : {std::pair{"base", Moved::base}, std::pair{"tool", Moved::tool}}) {
-      EffectToTest frame{name, frame_parameters(*model_, moved_frames(problem_.measurement, moved))};
-      if (!frame.parameters.empty()) frames.push_back(std::move(frame));
-    }
-    return frames;
   }
 
   /// A profile may pass a better estimate than the one that it began at.
@@ -339,50 +330,13 @@ class CalibrationRun {
                        stretch() * (effect->dominates() ? 1.0 : far_moved)));
   }
 
-  /// A smooth effect that the residuals show, and for a variant that lacks one the fit once more, counting it.
+  /// For a variant with an unmodelled effect the fit once more, counting it.
   void allow_for_unmodelled(FitOptions& options) {
-    const UnmodelledSpec* spec = spec_.unmodelled ? &*spec_.unmodelled : nullptr;
-    if (options.weighting != Weighting::weighted) {
-      result_.smooth.why_not = "weights are not those of the noise";
-      return;
-    }
-    const std::vector<double> own = spec ? own_effects(problem_.measurement) : std::vector<double>{};
-    result_.smooth = smooth_effect(*model_, columns_, fitted_, result_.fit, spec ? spec->length : std::nullopt, own);
-    const SmoothEffect& found = result_.smooth;
-    if (spec == nullptr) return;
-    if (!spec->size && !found.why_not.empty()) {
-      result_.notes.push_back("the size of an unmodelled effect cannot be estimated, intervals leave it out: " +
-                              found.why_not);
-      return;
-    }
-    // Where the readings' own noise is refused, all of the covariance counts so many times more.
-    const double size = spec->size.value_or(found.size / std::max(1.0, found.noise));
-    const double length =
-        spec->length.value_or(found.why_not.empty() && found.size > 0 ? found.length : UnmodelledSize::assumed_length);
-    if (!(size > 0) && own.empty()) return;
-    UnmodelledSize counted{size, spec->rotation, length, own};
-    if (!(size > 0)) {
-      counted.translation = 1.0;
-      counted.of_robot = false;
-    }
-    options.effect = std::make_shared<UnmodelledEffect>(*model_, counted);
+    const auto effect = effect_to_count({problem_, spec_}, poses(), result_);
+    if (effect == nullptr) return;
+    options.effect = effect;
     options.start = result_.fit.correction;
     result_.fit = fit(*model_, columns_, fitted_, options);
-    if (size > 0) result_.counted = {size, length};
-  }
-
-  /// Residuals interpolated between the poses.
-  void interpolate(const FitOptions& options) {
-    if (options.effect == nullptr) {
-      result_.interpolation = Interpolation{};
-      result_.interpolation->why_not =
-          options_.weighting != Weighting::weighted ? "weights are not those of the noise"
-          : spec_.unmodelled                        ? "the residuals contain no smooth effect"
-                             : "variant '" + spec_.name + "' has no unmodelled effect: set `unmodelled: auto`";
-      return;
-    }
-    result_.interpolation =
-        posewright::interpolate(*model_, columns_, fitted_, held_back_, result_.fit, options.effect);
   }
 
   /// Poses of another day may have been read in another frame: their errors are then those of the frame.

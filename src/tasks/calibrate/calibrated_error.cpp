@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "posewright/model/apply_parameters.hpp"
-#include "posewright/study/expected_error.hpp"
 #include "posewright/study/study.hpp"
 #include "posewright/support/random.hpp"
 

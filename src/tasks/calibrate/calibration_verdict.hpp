@@ -1,7 +1,10 @@
 #pragma once
 
+#include <optional>
+#include <string>
 #include <vector>
 
+#include "posewright/results/calibration.hpp"
 #include "posewright/tasks/calibrate_problem.hpp"
 
 namespace posewright {
@@ -24,5 +27,15 @@ void fill_compensator(const ElastostaticSpec& spec, Calibration& result);
 
 /// Says whether the estimate is to be used: fills verdict and refusals, adds a note where no gain is shown.
 void judge_calibration(const CalibratedPoses& poses, Calibration& result);
+
+/// A frame that moved while its poses were read; empty without one.
+std::string note_of_step(const std::optional<FrameStep>& step);
+
+/// Displacements of every visit that the estimate counts though nobody stated them; empty without.
+std::string note_of_visits(const std::optional<VisitErrors>& visits);
+
+/// Instruments that count with a larger noise than stated, and those whose readings make predictions of the others'
+/// poses worse; empty without.
+std::string note_of_instruments(const std::vector<InstrumentResiduals>& instruments);
 
 }  // namespace posewright

@@ -1,9 +1,12 @@
 #include "placed_campaigns.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "posewright/calibration/placing_columns.hpp"
 #include "posewright/model/campaigns.hpp"
+#include "posewright/support/distributions.hpp"
+#include "posewright/support/error.hpp"
 
 namespace posewright {
 namespace {
@@ -35,6 +38,16 @@ void place_campaign(const IdentificationModel& model, const VariantColumns& all,
   for (const int i : moved) placed[std::size_t(i)] = found[std::size_t(i)];
 }
 
+/// The estimate alone; none if it cannot be made.
+std::optional<Fit> fit_alone(const Problem& problem, CalibrateOptions options, const Monitor& monitor) {
+  options.estimate_alone = true;
+  try {
+    return calibrate_problem(problem, options, monitor).fit;
+  } catch (const CannotDo&) {
+    return std::nullopt;
+  }
+}
+
 }  // namespace
 
 std::vector<double> placed_campaigns(const IdentificationModel& model, const VariantColumns& all,
@@ -45,6 +58,21 @@ std::vector<double> placed_campaigns(const IdentificationModel& model, const Var
   for (std::size_t c = 1; c < campaigns.size(); ++c)
     place_campaign(model, all, of_campaign(poses, c), campaigns[c], options, result);
   return result;
+}
+
+bool is_tool_remounted(const Problem& problem, CalibrateOptions options, const Monitor& monitor) {
+  constexpr double chance = 1e-4, less = 0.8;
+  if (options.weighting != Weighting::weighted) return false;
+  const std::optional<Fit> base = fit_alone(problem, options, monitor);
+  if (base && base->noise_factor <= 1) return false;
+  options.moved = Moved::both;
+  const std::optional<Fit> both = fit_alone(problem, options, monitor);
+  if (!both || !both->converged) return false;
+  if (!base || !base->converged) return true;
+  const double added = double(both->covariance.rows() - base->covariance.rows());
+  if (!(added > 0) || both->freedom < 1 || !(both->scale < less * base->scale)) return false;
+  const double variance = both->chi_square / both->freedom;
+  return fisher_exceeded((base->chi_square - both->chi_square) / added / variance, added, both->freedom) < chance;
 }
 
 }  // namespace posewright

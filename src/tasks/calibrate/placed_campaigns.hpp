@@ -4,6 +4,9 @@
 #include <vector>
 
 #include "posewright/calibration/fit.hpp"
+#include "posewright/problem/problem.hpp"
+#include "posewright/support/monitor.hpp"
+#include "posewright/tasks/calibrate_problem.hpp"
 
 namespace posewright {
 
@@ -14,5 +17,9 @@ namespace posewright {
 std::vector<double> placed_campaigns(const IdentificationModel& model, const VariantColumns& all,
                                      const std::vector<MeasuredPose>& poses, const std::vector<std::string>& campaigns,
                                      const FitOptions& options);
+
+/// True if each campaign has a tool of its own, by F of the parameters that it adds where the noise is rejected.
+/// @param options  with the base moved between campaigns
+bool is_tool_remounted(const Problem& problem, CalibrateOptions options, const Monitor& monitor);
 
 }  // namespace posewright

@@ -1,7 +1,6 @@
 #include "posewright/tasks/known_cameras.hpp"
 
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 
 #include "posewright/support/error.hpp"

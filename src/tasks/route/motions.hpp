@@ -3,7 +3,6 @@
 #include <map>
 #include <memory>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "posewright/study/variant.hpp"

@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <functional>
 
-#include "../fill_plan.hpp"
 #include "../without_roadmap.hpp"
 #include "motions.hpp"
 #include "posewright/lists/parameters_file.hpp"
@@ -15,7 +13,6 @@
 #include "posewright/model/instrument_choice.hpp"
 #include "posewright/model/variant_columns.hpp"
 #include "posewright/route/tour.hpp"
-#include "posewright/study/written_plan.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/json.hpp"
 #include "posewright/support/parallel.hpp"

@@ -1,10 +1,10 @@
-#include "effects_left_out.hpp"
+#include "calibration_effects.hpp"
 
 #include <algorithm>
 #include <map>
 
+#include "calibration_data.hpp"
 #include "posewright/model/joint_effects.hpp"
-#include "posewright/support/error.hpp"
 
 namespace posewright {
 namespace {
@@ -74,6 +74,58 @@ std::vector<ScoreTest> effects_left_out(const ProblemVariant& variant, const Ide
     if (effect.parameters.size() > 1) effects.push_back(std::move(effect));
   }
   return score_tests(*model, own, poses, correction, fit, effects);
+}
+
+std::vector<EffectToTest> frames_that_may_move(const MeasurementSpec& measurement, const IdentificationModel& model) {
+  std::vector<EffectToTest> frames;
+  for (const auto& [name, moved] : {std::pair{"base", Moved::base}, std::pair{"tool", Moved::tool}}) {
+    EffectToTest frame{name, frame_parameters(model, moved_frames(measurement, moved))};
+    if (!frame.parameters.empty()) frames.push_back(std::move(frame));
+  }
+  return frames;
+}
+
+std::shared_ptr<const UnmodelledEffect> effect_to_count(const ProblemVariant& variant, const CalibratedPoses& poses,
+                                                        Calibration& result) {
+  SmoothEffect& found = result.smooth;
+  if (result.weighting != Weighting::weighted) {
+    found.why_not = "weights are not those of the noise";
+    return nullptr;
+  }
+  const UnmodelledSpec* spec = variant.spec.unmodelled ? &*variant.spec.unmodelled : nullptr;
+  const std::vector<double> own = spec ? own_effects(variant.problem.measurement) : std::vector<double>{};
+  found = smooth_effect(poses.model, poses.columns, poses.fitted, result.fit, spec ? spec->length : std::nullopt, own);
+  if (spec == nullptr) return nullptr;
+  if (!spec->size && !found.why_not.empty()) {
+    result.notes.push_back("the size of an unmodelled effect cannot be estimated, intervals leave it out: " +
+                           found.why_not);
+    return nullptr;
+  }
+  // Where the readings' own noise is refused, all of the covariance counts so many times more.
+  const double size = spec->size.value_or(found.size / std::max(1.0, found.noise));
+  const double length =
+      spec->length.value_or(found.why_not.empty() && found.size > 0 ? found.length : UnmodelledSize::assumed_length);
+  if (!(size > 0) && own.empty()) return nullptr;
+  UnmodelledSize counted{size, spec->rotation, length, own};
+  if (size > 0) {
+    result.counted = {size, length};
+  } else {
+    counted.translation = 1.0;
+    counted.of_robot = false;
+  }
+  return std::make_shared<UnmodelledEffect>(poses.model, counted);
+}
+
+Interpolation interpolation_of(const VariantSpec& variant, const CalibratedPoses& poses,
+                               const std::shared_ptr<const UnmodelledEffect>& effect, const Calibration& result) {
+  if (effect != nullptr)
+    return interpolate(poses.model, poses.columns, poses.fitted, poses.held_back, result.fit, effect);
+  Interpolation none;
+  none.why_not = result.weighting != Weighting::weighted ? "weights are not those of the noise"
+                 : variant.unmodelled
+                     ? "the residuals contain no smooth effect"
+                     : "variant '" + variant.name + "' has no unmodelled effect: set `unmodelled: auto`";
+  return none;
 }
 
 }  // namespace posewright

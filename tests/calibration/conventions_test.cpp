@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "posewright/model/rotation_vector.hpp"
+#include "tests/kit/message_of.hpp"
 #include "tests/kit/virtual_file.hpp"
 
 namespace posewright {
@@ -207,12 +208,7 @@ const fs::path cases = fs::path(POSEWRIGHT_SHARED_DIR) / "cases";
 std::string refusal_of(const std::string& problem, const std::string& data) {
   CalibrateOptions options;
   options.data = cases / data;
-  try {
-    calibrate_problem(read_problem(cases / problem), options, Monitor{});
-    return "";
-  } catch (const CannotDo& error) {
-    return error.what();
-  }
+  return message_of<CannotDo>([&] { calibrate_problem(read_problem(cases / problem), options, Monitor{}); });
 }
 
 /// What `calibrate` says of the readings of a camera whose problem estimates the hand-eye transform alone.
@@ -220,12 +216,7 @@ std::string refusal_of_pictures(VirtualFile& data) {
   data.write();
   CalibrateOptions options = data.options();
   options.variant = "hand_eye";
-  try {
-    calibrate_problem(data.problem, options, Monitor{});
-    return "";
-  } catch (const CannotDo& error) {
-    return error.what();
-  }
+  return message_of<CannotDo>([&] { calibrate_problem(data.problem, options, Monitor{}); });
 }
 
 TEST(Conventions, OfPicturesAreNamedByCalibrate) {

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
 
 #include "posewright/calibration/fit.hpp"
 #include "posewright/model/model_factory.hpp"

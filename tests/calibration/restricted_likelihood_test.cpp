@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "posewright/support/dense.hpp"
 #include "posewright/support/random.hpp"

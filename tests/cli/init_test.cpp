@@ -31,10 +31,27 @@ using testing::Not;
 
 const std::string kr270 = POSEWRIGHT_SOURCE_DIR "/examples/kr270/kr270.urdf";
 
-ProgramRun init(const TemporaryFolder& folder, std::vector<std::string> words) {
-  words.insert(words.begin(), "init");
-  words.emplace_back("--yes");
-  return run_program(folder.path(), words);
+class Init : public testing::Test {
+ protected:
+  ProgramRun program(const std::vector<std::string>& words) const { return run_program(folder.path(), words); }
+  ProgramRun init(std::vector<std::string> words) const {
+    words.insert(words.begin(), "init");
+    words.emplace_back("--yes");
+    return program(words);
+  }
+  /// With a tracker and eight poses.
+  ProgramRun init_arm(const std::string& urdf) const {
+    folder.write("arm.urdf", urdf);
+    return init({"arm.urdf", "--tracker", "--poses", "8"});
+  }
+  std::string problem_text() const { return read_file(folder / "problem.yaml"); }
+
+  const TemporaryFolder folder;
+};
+
+/// The text with something else in place of the first `old`.
+std::string with(std::string text, const std::string& old, const std::string& other) {
+  return text.replace(text.find(old), old.size(), other);
 }
 
 /// Runs `init` with a terminal as its input, output and error; each answer is typed when the program waits for it.
@@ -69,13 +86,12 @@ std::pair<int, std::string> at_a_terminal(const TemporaryFolder& folder, const s
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, shown};
 }
 
-TEST(Init, WritesAFileThatPlansWithoutAnEdit) {
-  const TemporaryFolder folder;
-  const ProgramRun run = init(folder, {kr270, "--tracker", "--poses", "12"});
+TEST_F(Init, WritesAFileThatPlansWithoutAnEdit) {
+  const ProgramRun run = init({kr270, "--tracker", "--poses", "12"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("problem.yaml: 6 joints from base_link to flange, laser tracker"));
   EXPECT_THAT(run.out, HasSubstr("posewright plan problem.yaml"));
-  const ProgramRun plan = run_program(folder.path(), {"plan", "problem.yaml", "--proof-time", "0"});
+  const ProgramRun plan = program({"plan", "problem.yaml", "--proof-time", "0"});
   EXPECT_EQ(plan.exit_code, 0) << plan.err;
   EXPECT_THAT(plan.out, HasSubstr("12 poses for variant geometric"));
 }
@@ -96,42 +112,33 @@ const char* const hanging = R"(<robot name="hanging">
   <joint name="end" type="fixed"><parent link="l3"/><child link="flange"/><origin xyz="0 0 -0.42"/></joint>
 </robot>)";
 
-TEST(Init, ProposesAFreeHomeAndPosesThatARouteKeeps) {
-  const TemporaryFolder folder;
-  folder.write("arm.urdf", hanging);
-  const ProgramRun run = init(folder, {"arm.urdf", "--tracker", "--poses", "8"});
+TEST_F(Init, ProposesAFreeHomeAndPosesThatARouteKeeps) {
+  const ProgramRun run = init_arm(hanging);
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(read_file(folder / "problem.yaml"), HasSubstr("reachable: true"));
-  EXPECT_THAT(read_file(folder / "problem.yaml"), Not(HasSubstr("\"j2\": \"0 deg\""))) << "zero is in the floor";
-  ASSERT_EQ(run_program(folder.path(), {"plan", "problem.yaml", "--proof-time", "0"}).exit_code, 0);
-  const ProgramRun route = run_program(folder.path(), {"route", "plan.json", "--from-home"});
+  EXPECT_THAT(problem_text(), HasSubstr("reachable: true"));
+  EXPECT_THAT(problem_text(), Not(HasSubstr("\"j2\": \"0 deg\""))) << "zero is in the floor";
+  ASSERT_EQ(program({"plan", "problem.yaml", "--proof-time", "0"}).exit_code, 0);
+  const ProgramRun route = program({"route", "plan.json", "--from-home"});
   EXPECT_EQ(route.exit_code, 0) << route.err;
   EXPECT_THAT(route.out, HasSubstr("8 poses in "));
 }
 
-TEST(Init, KeepsJointsThatTurnMoreThanOnceWithinOneTurn) {
-  const TemporaryFolder folder;
-  std::string text = hanging;
-  const auto turn = [&](const std::string& limits, const std::string& more) {
-    text.replace(text.find(limits), limits.size(), more);
-  };
-  turn("lower=\"-3\" upper=\"3\"", "lower=\"-6\" upper=\"6\"");
-  turn("lower=\"-3\" upper=\"3\"", "lower=\"-3.3\" upper=\"2.9\"");
-  folder.write("arm.urdf", text);
-  ASSERT_EQ(init(folder, {"arm.urdf", "--tracker", "--poses", "8"}).exit_code, 0);
-  EXPECT_THAT(read_file(folder / "problem.yaml"), HasSubstr("    limits: {\"j1\": [\"-180 deg\", \"180 deg\"]}\n"));
+TEST_F(Init, KeepsJointsThatTurnMoreThanOnceWithinOneTurn) {
+  const std::string limits = "lower=\"-3\" upper=\"3\"";
+  const std::string text =
+      with(with(hanging, limits, "lower=\"-6\" upper=\"6\""), limits, "lower=\"-3.3\" upper=\"2.9\"");
+  ASSERT_EQ(init_arm(text).exit_code, 0);
+  EXPECT_THAT(problem_text(), HasSubstr("    limits: {\"j1\": [\"-180 deg\", \"180 deg\"]}\n"));
 }
 
-TEST(Init, LeavesMotionsOutWhereNoVelocityIsKnown) {
-  const TemporaryFolder folder;
+TEST_F(Init, LeavesMotionsOutWhereNoVelocityIsKnown) {
   std::string text = hanging;
   for (std::size_t at = 0; (at = text.find("velocity=\"2\"", at)) != std::string::npos;)
     text.replace(at, 12, "velocity=\"0\"");
-  folder.write("arm.urdf", text);
-  const ProgramRun run = init(folder, {"arm.urdf", "--tracker", "--poses", "8"});
+  const ProgramRun run = init_arm(text);
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.err, HasSubstr("reachability of poses is not checked"));
-  EXPECT_THAT(read_file(folder / "problem.yaml"), Not(HasSubstr("reachable")));
+  EXPECT_THAT(problem_text(), Not(HasSubstr("reachable")));
 }
 
 /// A program `xacro` that is first in the search path, as long as this lives: it writes the file without its macros.
@@ -151,20 +158,17 @@ class OwnXacro {
   std::string path_;
 };
 
-TEST(Init, WritesTheExpandedRobotBesideTheProblemSoThatLaterCommandsNeedNoXacro) {
-  const TemporaryFolder folder;
+TEST_F(Init, WritesTheExpandedRobotBesideTheProblemSoThatLaterCommandsNeedNoXacro) {
   std::filesystem::create_directories(folder / "robots/meshes");
   folder.write("robots/meshes/tip.obj",
                "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
-  std::string text = hanging;
-  const std::string tip = "<box size=\"0.06 0.06 0.3\"/>";
-  text.replace(text.find(tip), tip.size(), "<mesh filename=\"meshes/tip.obj\"/>");
+  std::string text = with(hanging, "<box size=\"0.06 0.06 0.3\"/>", "<mesh filename=\"meshes/tip.obj\"/>");
   text.insert(text.find('\n') + 1, "<xacro:arg name=\"side\"/>\n");
   folder.write("robots/arm.urdf.xacro", text);
   {
     const OwnXacro xacro(folder);
     const ProgramRun run =
-        init(folder, {"robots/arm.urdf.xacro", "--xacro", "side=left", "--tracker", "--poses", "8", "-o", "cell.yaml"});
+        init({"robots/arm.urdf.xacro", "--xacro", "side=left", "--tracker", "--poses", "8", "-o", "cell.yaml"});
     ASSERT_EQ(run.exit_code, 0) << run.err;
     EXPECT_EQ(run.err, "") << "the mesh is found";
   }
@@ -173,12 +177,11 @@ TEST(Init, WritesTheExpandedRobotBesideTheProblemSoThatLaterCommandsNeedNoXacro)
   EXPECT_THAT(problem, HasSubstr("# urdf: \"robots/arm.urdf.xacro\"\n  # xacro: {\"side\": \"left\"}\n"));
   EXPECT_THAT(urdf, Not(HasSubstr("xacro:")));
   EXPECT_THAT(urdf, HasSubstr("filename=\"" + (folder / "robots/meshes/tip.obj").string() + "\""));
-  EXPECT_EQ(run_program(folder.path(), {"plan", "cell.yaml", "--proof-time", "0"}).exit_code, 0);
+  EXPECT_EQ(program({"plan", "cell.yaml", "--proof-time", "0"}).exit_code, 0);
 
   const OwnXacro xacro(folder);
   folder.write("other.urdf", "mine\n");
-  const ProgramRun refused =
-      init(folder, {"robots/arm.urdf.xacro", "--xacro", "side=left", "--tracker", "-o", "other.yaml"});
+  const ProgramRun refused = init({"robots/arm.urdf.xacro", "--xacro", "side=left", "--tracker", "-o", "other.yaml"});
   EXPECT_EQ(refused.exit_code, 1);
   EXPECT_THAT(refused.err, HasSubstr("other.urdf exists; --force replaces it"));
   EXPECT_EQ(read_file(folder / "other.urdf"), "mine\n");
@@ -197,76 +200,63 @@ std::vector<std::string> lines_named(const std::string& notes, const std::string
   return lines;
 }
 
-TEST(Init, WritesTheFloorAsACommentWhereAnArmHangsBelowIt) {
-  const TemporaryFolder folder;
-  std::string text = hanging;
-  for (const auto& [above, below] : {std::pair("0 0 0.3", "0 0 -0.3"), std::pair("0.4 0 0", "0 0 0")})
-    text.replace(text.find(above), std::string(above).size(), below);
-  folder.write("arm.urdf", text);
-  const ProgramRun run = init(folder, {"arm.urdf", "--tracker", "--poses", "8"});
+TEST_F(Init, WritesTheFloorAsACommentWhereAnArmHangsBelowIt) {
+  const ProgramRun run = init_arm(with(with(hanging, "0 0 0.3", "0 0 -0.3"), "0.4 0 0", "0 0 0"));
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.err, HasSubstr("and 'floor' are too near in"));
-  const auto lines = lines_named(run.err, read_file(folder / "problem.yaml"));
+  const auto lines = lines_named(run.err, problem_text());
   ASSERT_EQ(lines.size(), 1U) << run.err;
   EXPECT_EQ(lines.front(), "    #   - {name: floor, plane: [0, 0, 1], at: [0, 0, \"-100 mm\"]}");
-  EXPECT_EQ(run_program(folder.path(), {"plan", "problem.yaml", "--proof-time", "0"}).exit_code, 0);
+  EXPECT_EQ(program({"plan", "problem.yaml", "--proof-time", "0"}).exit_code, 0);
 
-  const ProgramRun said = init(folder, {"arm.urdf", "--tracker", "--floor", "-100mm", "--force"});
+  const ProgramRun said = init({"arm.urdf", "--tracker", "--floor", "-100mm", "--force"});
   EXPECT_EQ(said.exit_code, 1) << "a floor that somebody names is there";
   EXPECT_THAT(said.err, HasSubstr("'collision with floor' rejects"));
 }
 
-TEST(Init, IgnoresThePairOfLinksThatLeavesNoPoseFreeAndNamesTheLine) {
-  const TemporaryFolder folder;
+TEST_F(Init, IgnoresThePairOfLinksThatLeavesNoPoseFreeAndNamesTheLine) {
   // Two cabinets, one on each side, and the arm is in one of them wherever it stands.
-  std::string text = hanging;
   const std::string base = "<box size=\"0.3 0.3 0.2\"/></geometry></collision></link>";
-  text.replace(text.find(base), base.size(),
-               base +
-                   "<link name=\"left\"><collision><geometry><box size=\"4 4 4\"/></geometry></collision></link>"
-                   "<link name=\"right\"><collision><geometry><box size=\"4 4 4\"/></geometry></collision></link>"
-                   "<joint name=\"a\" type=\"fixed\"><parent link=\"base\"/><child link=\"left\"/>"
-                   "<origin xyz=\"0 2.01 0\"/></joint><joint name=\"b\" type=\"fixed\"><parent link=\"base\"/>"
-                   "<child link=\"right\"/><origin xyz=\"0 -2.01 0\"/></joint>");
+  const std::string text =
+      with(hanging, base,
+           base +
+               "<link name=\"left\"><collision><geometry><box size=\"4 4 4\"/></geometry></collision></link>"
+               "<link name=\"right\"><collision><geometry><box size=\"4 4 4\"/></geometry></collision></link>"
+               "<joint name=\"a\" type=\"fixed\"><parent link=\"base\"/><child link=\"left\"/>"
+               "<origin xyz=\"0 2.01 0\"/></joint><joint name=\"b\" type=\"fixed\"><parent link=\"base\"/>"
+               "<child link=\"right\"/><origin xyz=\"0 -2.01 0\"/></joint>");
   folder.write("arm.urdf", text);
-  const ProgramRun run = init(folder, {"arm.urdf", "--tracker", "--poses", "8", "--floor", "none"});
+  const ProgramRun run = init({"arm.urdf", "--tracker", "--poses", "8", "--floor", "none"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.err, HasSubstr("random configurations, no pose was free: this pair is ignored in problem.yaml:"));
-  const auto lines = lines_named(run.err, read_file(folder / "problem.yaml"));
+  const auto lines = lines_named(run.err, problem_text());
   ASSERT_FALSE(lines.empty()) << run.err;
   for (const std::string& line : lines)
     EXPECT_THAT(line, testing::ContainsRegex("      - \\[\"l[123]\", \"(left|right)\"\\]"));
-  EXPECT_EQ(run_program(folder.path(), {"plan", "problem.yaml", "--proof-time", "0"}).exit_code, 0);
+  EXPECT_EQ(program({"plan", "problem.yaml", "--proof-time", "0"}).exit_code, 0);
 }
 
-TEST(Init, RefusesLinksOfAnotherUnitThanTheArm) {
-  const TemporaryFolder folder;
-  std::string text = hanging;
-  text.replace(text.find("0.08 0.08 0.5"), 13, "80 80 500");
-  folder.write("arm.urdf", text);
-  const ProgramRun run = init(folder, {"arm.urdf", "--tracker", "--poses", "8"});
+TEST_F(Init, RefusesLinksOfAnotherUnitThanTheArm) {
+  const ProgramRun run = init_arm(with(hanging, "0.08 0.08 0.5", "80 80 500"));
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.err, HasSubstr("arm.urdf:4: link 'l2' is 5e+02 m large on an arm that reaches 1.4 m"));
   EXPECT_FALSE(read_problem(folder / "problem.yaml").workspace.collision);
 }
 
-TEST(Init, PutsTheFloorUnderWhatTheArmStandsOnAndNotUnderAFixtureElsewhere) {
-  const TemporaryFolder folder;
-  std::string text = hanging;
+TEST_F(Init, PutsTheFloorUnderWhatTheArmStandsOnAndNotUnderAFixtureElsewhere) {
   const std::string base = "<box size=\"0.3 0.3 0.2\"/></geometry></collision></link>";
-  text.replace(text.find(base), base.size(),
-               "<box size=\"0.3 0.3 0.2\"/></geometry></collision></link><link name=\"camera\"><collision><geometry>"
-               "<sphere radius=\"0.05\"/></geometry></collision></link><joint name=\"a\" type=\"fixed\"><parent "
-               "link=\"base\"/><child link=\"camera\"/><origin xyz=\"0.8 0 -0.4\"/></joint>");
-  folder.write("arm.urdf", text);
-  ASSERT_EQ(init(folder, {"arm.urdf", "--tracker", "--poses", "8"}).exit_code, 0);
-  EXPECT_THAT(read_file(folder / "problem.yaml"), HasSubstr("plane: [0, 0, 1], at: [0, 0, \"-100 mm\"]"));
+  const std::string text =
+      with(hanging, base,
+           "<box size=\"0.3 0.3 0.2\"/></geometry></collision></link><link name=\"camera\"><collision><geometry>"
+           "<sphere radius=\"0.05\"/></geometry></collision></link><joint name=\"a\" type=\"fixed\"><parent "
+           "link=\"base\"/><child link=\"camera\"/><origin xyz=\"0.8 0 -0.4\"/></joint>");
+  ASSERT_EQ(init_arm(text).exit_code, 0);
+  EXPECT_THAT(problem_text(), HasSubstr("plane: [0, 0, 1], at: [0, 0, \"-100 mm\"]"));
 }
 
-TEST(Init, SaysEachChoiceInTheOrderRobotInstrumentCellPlan) {
-  const TemporaryFolder folder;
-  ASSERT_EQ(init(folder, {kr270, "--camera", "realsense-d435"}).exit_code, 0);
-  const std::string text = read_file(folder / "problem.yaml");
+TEST_F(Init, SaysEachChoiceInTheOrderRobotInstrumentCellPlan) {
+  ASSERT_EQ(init({kr270, "--camera", "realsense-d435"}).exit_code, 0);
+  const std::string text = problem_text();
   std::size_t at = 0;
   for (const char* part :
        {"# yaml-language-server: $schema=/", "\n# 1. Robot:", "\nrobot:", "\n# 2. Instrument:", "\nmeasurement:",
@@ -281,9 +271,8 @@ TEST(Init, SaysEachChoiceInTheOrderRobotInstrumentCellPlan) {
   EXPECT_TRUE(std::filesystem::is_regular_file(schema)) << schema;
 }
 
-TEST(Init, PutsTheBoardWhereTheCameraOnTheHandSeesIt) {
-  const TemporaryFolder folder;
-  ASSERT_EQ(init(folder, {kr270, "--camera", "1920x1200@2300", "--board", "5x7x40mm", "-o", "c.yaml"}).exit_code, 0);
+TEST_F(Init, PutsTheBoardWhereTheCameraOnTheHandSeesIt) {
+  ASSERT_EQ(init({kr270, "--camera", "1920x1200@2300", "--board", "5x7x40mm", "-o", "c.yaml"}).exit_code, 0);
   const Problem problem = read_problem(folder / "c.yaml");
   const auto& camera = std::get<CameraMeasurement>(problem.measurement.instrument);
   EXPECT_EQ(camera.rows, 5);
@@ -291,8 +280,7 @@ TEST(Init, PutsTheBoardWhereTheCameraOnTheHandSeesIt) {
   EXPECT_DOUBLE_EQ(camera.spacing, 0.04);
   EXPECT_DOUBLE_EQ(camera.fx, 2300);
   EXPECT_TRUE(camera.on_hand);
-  const ProgramRun seen =
-      run_program(folder.path(), {"observe", "c.yaml", "--candidates", "50", "--variant", "hand_eye"});
+  const ProgramRun seen = program({"observe", "c.yaml", "--candidates", "50", "--variant", "hand_eye"});
   EXPECT_EQ(seen.exit_code, 0) << seen.err;
   EXPECT_THAT(seen.out, HasSubstr("6 of 6 parameters can be identified"));
 }
@@ -313,28 +301,25 @@ std::string cart_urdf() {
   return text + "</robot>";
 }
 
-TEST(Init, StandsCameraOrBoardBeforeAHandThatTurnsAboutOneAxisAndHoldsItsHeight) {
-  const TemporaryFolder folder;
+TEST_F(Init, StandsCameraOrBoardBeforeAHandThatTurnsAboutOneAxisAndHoldsItsHeight) {
   folder.write("robot.urdf", cart_urdf());
   for (const std::vector<std::string>& words :
        {std::vector<std::string>{"--fixed-camera"}, {}, {"--fixed-camera", "--at", "0,0,0.8"}}) {
     std::vector<std::string> all = {"robot.urdf", "--camera", "realsense-d435", "--force"};
     all.insert(all.end(), words.begin(), words.end());
-    const ProgramRun run = init(folder, all);
+    const ProgramRun run = init(all);
     ASSERT_EQ(run.exit_code, 0) << run.err;
     EXPECT_THAT(run.err, HasSubstr("no motion of this arm separates board.z from the other parameters"));
-    EXPECT_THAT(read_file(folder / "problem.yaml"), HasSubstr("    fixed: [\"board.z\"]\n"));
-    const ProgramRun plan =
-        run_program(folder.path(), {"plan", "problem.yaml", "--candidates", "100", "--restarts", "1", "--force"});
+    EXPECT_THAT(problem_text(), HasSubstr("    fixed: [\"board.z\"]\n"));
+    const ProgramRun plan = program({"plan", "problem.yaml", "--candidates", "100", "--restarts", "1", "--force"});
     EXPECT_EQ(plan.exit_code, 0) << plan.err;
     EXPECT_THAT(plan.out, HasSubstr("6 parameters and 5 nuisance parameters"));
   }
 }
 
-TEST(Init, PlacesAndLinksThatAreSaidAreTaken) {
-  const TemporaryFolder folder;
-  const ProgramRun run = init(folder, {kr270, "--tracker", "--at", "4,-1,500mm", "--base", "link_1", "--tip", "link_6",
-                                       "--accuracy", "0.2mm", "--floor", "none"});
+TEST_F(Init, PlacesAndLinksThatAreSaidAreTaken) {
+  const ProgramRun run = init({kr270, "--tracker", "--at", "4,-1,500mm", "--base", "link_1", "--tip", "link_6",
+                               "--accuracy", "0.2mm", "--floor", "none"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const Problem problem = read_problem(folder / "problem.yaml");
   const auto& points = std::get<PointsMeasurement>(problem.measurement.instrument);
@@ -342,31 +327,29 @@ TEST(Init, PlacesAndLinksThatAreSaidAreTaken) {
   EXPECT_EQ(std::get<SerialArmSpec>(problem.robot).base->value, "link_1");
   EXPECT_EQ(std::get<SerialArmSpec>(problem.robot).tip->value, "link_6");
   EXPECT_TRUE(problem.workspace.collision->obstacles.empty());
-  EXPECT_THAT(read_file(folder / "problem.yaml"), HasSubstr("poses: auto"));
+  EXPECT_THAT(problem_text(), HasSubstr("poses: auto"));
 }
 
-TEST(Init, WritesOverNothingThatIsThere) {
-  const TemporaryFolder folder;
+TEST_F(Init, WritesOverNothingThatIsThere) {
   folder.write("problem.yaml", "mine\n");
-  const ProgramRun refused = init(folder, {kr270, "--tracker"});
+  const ProgramRun refused = init({kr270, "--tracker"});
   EXPECT_EQ(refused.exit_code, 1);
   EXPECT_THAT(refused.err, HasSubstr("problem.yaml exists; --force replaces it"));
-  EXPECT_EQ(read_file(folder / "problem.yaml"), "mine\n");
-  EXPECT_EQ(init(folder, {kr270, "--tracker", "--force"}).exit_code, 0);
-  EXPECT_EQ(init(folder, {kr270, "--tracker"}).exit_code, 1) << "it may have been edited since";
+  EXPECT_EQ(problem_text(), "mine\n");
+  EXPECT_EQ(init({kr270, "--tracker", "--force"}).exit_code, 0);
+  EXPECT_EQ(init({kr270, "--tracker"}).exit_code, 1) << "it may have been edited since";
   folder.write("robot.urdf", read_file(kr270));
-  EXPECT_EQ(init(folder, {"robot.urdf", "--tracker", "-o", "robot.urdf", "--force"}).exit_code, 2);
+  EXPECT_EQ(init({"robot.urdf", "--tracker", "-o", "robot.urdf", "--force"}).exit_code, 2);
   EXPECT_EQ(read_file(folder / "robot.urdf"), read_file(kr270));
 }
 
-TEST(Init, MakesAProblemOfSamplesThatCalibratesPlansAndGoesOn) {
-  const TemporaryFolder folder;
+TEST_F(Init, MakesAProblemOfSamplesThatCalibratesPlansAndGoesOn) {
   const std::string samples = POSEWRIGHT_SOURCE_DIR "/examples/hand_eye/hand_eye.samples";
-  const ProgramRun run = init(folder, {"--samples", samples});
+  const ProgramRun run = init({"--samples", samples});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.err, HasSubstr("note: sample 5 is wrong: 39"));
   const auto result = [&](std::vector<std::string> words) {
-    const ProgramRun done = run_program(folder.path(), words);
+    const ProgramRun done = program(words);
     EXPECT_EQ(done.exit_code, 0) << words.front() << ": " << done.err;
     return done.out;
   };
@@ -393,13 +376,12 @@ TEST(Init, MakesAProblemOfSamplesThatCalibratesPlansAndGoesOn) {
   EXPECT_THAT(result({"plan", "problem.yaml", "--poses", "6"}), HasSubstr("6 parameters and 6 nuisance parameters"));
   result({"evaluate", "problem.yaml", "poses.csv"});
   EXPECT_THAT(result({"next", "problem.yaml", "--data", samples, "--state", "-"}), HasSubstr("robot.roll [deg]"));
-  const ProgramRun refused = run_program(folder.path(), {"export", "plan.json", "--to", "moveit"});
+  const ProgramRun refused = program({"export", "plan.json", "--to", "moveit"});
   EXPECT_EQ(refused.exit_code, 1);
   EXPECT_THAT(refused.err, HasSubstr("moveit is for robots with joints"));
 }
 
-TEST(Init, WhatIsMissingOrWrongIsOneLine) {
-  const TemporaryFolder folder;
+TEST_F(Init, WhatIsMissingOrWrongIsOneLine) {
   folder.write("two.urdf",
                "<robot name='t'><link name='b'/><link name='l'/><link name='r'/>"
                "<joint name='jl' type='continuous'><parent link='b'/><child link='l'/></joint>"
@@ -423,7 +405,7 @@ TEST(Init, WhatIsMissingOrWrongIsOneLine) {
       {{"--samples", "samples.yaml"}, "samples.yaml"},
   };
   for (const auto& [words, message] : wrong) {
-    const ProgramRun run = init(folder, words);
+    const ProgramRun run = init(words);
     EXPECT_EQ(run.exit_code, 2) << message;
     EXPECT_THAT(run.err, HasSubstr(message));
     EXPECT_EQ(messages_in(run.err), 1) << run.err;
@@ -431,19 +413,17 @@ TEST(Init, WhatIsMissingOrWrongIsOneLine) {
   }
 }
 
-TEST(Init, AsksOnATerminalAndTakesWhatIsTyped) {
-  const TemporaryFolder folder;
+TEST_F(Init, AsksOnATerminalAndTakesWhatIsTyped) {
   const auto [status, shown] = at_a_terminal(folder, {kr270}, {"zde", "zed", "", "", "in front", "0.5 mm", "12"});
   EXPECT_EQ(status, 0) << shown;
   EXPECT_THAT(shown, HasSubstr("(did you mean 'zed'?)")) << "a wrong answer is asked for again";
   EXPECT_THAT(shown, HasSubstr("Board: rows x columns x spacing of its points [6x9x25mm]: "));
   const Problem problem = read_problem(folder / "problem.yaml");
   EXPECT_DOUBLE_EQ(std::get<CameraMeasurement>(problem.measurement.instrument).fx, 1400);
-  EXPECT_THAT(read_file(folder / "problem.yaml"), HasSubstr("poses: 12"));
+  EXPECT_THAT(problem_text(), HasSubstr("poses: 12"));
 }
 
-TEST(Init, AsksNothingThatOptionsSayAndNothingAfterYes) {
-  const TemporaryFolder folder;
+TEST_F(Init, AsksNothingThatOptionsSayAndNothingAfterYes) {
   const auto [status, shown] = at_a_terminal(folder, {kr270, "--tracker", "--at", "4,-1,0.5", "--poses", "12"}, {});
   EXPECT_EQ(status, 0) << shown;
   EXPECT_THAT(shown, Not(HasSubstr("]: ")));
@@ -452,31 +432,29 @@ TEST(Init, AsksNothingThatOptionsSayAndNothingAfterYes) {
   EXPECT_THAT(why, HasSubstr("no instrument is named"));
 }
 
-TEST(Init, AFileWhoseMeshesAreMissingPlansWithoutACellAndSaysSo) {
-  const TemporaryFolder folder;
+TEST_F(Init, AFileWhoseMeshesAreMissingPlansWithoutACellAndSaysSo) {
   std::string text = read_file(kr270);
   const std::string sphere = "<sphere radius=\"0.13\"/>";
   text.replace(text.find(sphere), sphere.size(), "<mesh filename=\"package://nowhere/wrist.stl\"/>");
   folder.write("arm.urdf", text);
-  const ProgramRun run = init(folder, {"arm.urdf", "--tracker"});
+  const ProgramRun run = init({"arm.urdf", "--tracker"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.err, HasSubstr("no collision is checked"));
   EXPECT_THAT(run.err, HasSubstr("package 'nowhere' is not found"));
-  EXPECT_THAT(read_file(folder / "problem.yaml"), HasSubstr("# No collision is checked: "));
+  EXPECT_THAT(problem_text(), HasSubstr("# No collision is checked: "));
   EXPECT_FALSE(read_problem(folder / "problem.yaml").workspace.collision);
 }
 
-TEST(Init, HandEyeInThreeCommands) {
-  const TemporaryFolder folder;
-  ASSERT_EQ(init(folder, {kr270, "--camera", "realsense-d435", "--board", "6x9x25mm"}).exit_code, 0);
-  const ProgramRun plan = run_program(folder.path(), {"plan", "problem.yaml", "--quiet"});
+TEST_F(Init, HandEyeInThreeCommands) {
+  ASSERT_EQ(init({kr270, "--camera", "realsense-d435", "--board", "6x9x25mm"}).exit_code, 0);
+  const ProgramRun plan = program({"plan", "problem.yaml", "--quiet"});
   ASSERT_EQ(plan.exit_code, 0) << plan.err;
   const std::map<std::string, std::string> lists = {{"moveit", "calposes.yaml"},
                                                     {"easy-handeye2", "posewright.samples"},
                                                     {"industrial-calibration", "measurements.yaml"},
                                                     {"industrial-calibration-hand-eye", "poses/15.yaml"}};
   for (const auto& [format, file] : lists) {
-    const ProgramRun run = run_program(folder.path(), {"export", "plan.json", "--to", format});
+    const ProgramRun run = program({"export", "plan.json", "--to", format});
     EXPECT_EQ(run.exit_code, 0) << run.err;
     EXPECT_TRUE(std::filesystem::exists(folder / file)) << file;
   }

@@ -12,6 +12,7 @@
 #include "list_readers.hpp"
 #include "posewright/support/error.hpp"
 #include "sequences.hpp"
+#include "tests/kit/message_of.hpp"
 
 namespace posewright {
 namespace {
@@ -266,12 +267,7 @@ TEST(TargetLists, AreOfOneStationAndOfTargetsThatItSees) {
   EXPECT_THAT(text("spatial-analyzer", "right"), testing::EndsWith("\r\nright,P2_ball_1,5000.000,0.000,1.234\r\n"));
   EXPECT_EQ(std::ranges::count(text("targets-csv", ""), '\n'), 1 + 3);
   const auto refusal_of = [&](const char* format, const char* station) -> std::string {
-    try {
-      text(format, station);
-    } catch (const std::exception& e) {
-      return e.what();
-    }
-    return "none";
+    return message_of([&] { text(format, station); }, "none");
   };
   EXPECT_THAT(refusal_of("spatial-analyzer", ""),
               HasSubstr("the plan has 2 stations, a list for spatial-analyzer one"));

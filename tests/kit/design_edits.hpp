@@ -15,11 +15,11 @@ struct DesignEdits : RunOptions {
   std::vector<std::pair<std::string, std::string>> keys;
 
   /// An empty value changes nothing.
-  void edit(const std::string& key, const std::string& value) {
+  DesignEdits& edit(const std::string& key, const std::string& value) {
     if (!value.empty()) keys.emplace_back("design." + key, value);
+    return *this;
   }
-  void edit(const std::string& key, int value) { edit(key, std::to_string(value)); }
-  void edit(const std::string& key, const char* value) { edit(key, std::string(value)); }
+  DesignEdits& edit(const std::string& key, int value) { return edit(key, std::to_string(value)); }
 
   Problem of(Problem problem) const {
     for (const auto& [key, value] : keys) set(problem, key, value, key);

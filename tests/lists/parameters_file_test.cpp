@@ -32,10 +32,7 @@ using testing::HasSubstr;
 const std::filesystem::path examples = std::filesystem::path(POSEWRIGHT_SOURCE_DIR) / "examples";
 
 Plan quick_plan(const Problem& problem) {
-  DesignEdits options;
-  options.edit("candidates", 200);
-  options.edit("restarts", 1);
-  options.edit("method", "exchange");
+  DesignEdits options = DesignEdits().edit("candidates", 200).edit("restarts", 1).edit("method", "exchange");
   options.threads = 1;
   return planned(problem, options);
 }
@@ -126,8 +123,7 @@ TEST_F(PlannedAtParameters, ReportAndEvaluationAgreeAtTheParametersAndSaySoElsew
   ASSERT_EQ(elsewhere.notes.size(), 1U);
   EXPECT_THAT(elsewhere.notes.front(), HasSubstr("The plan was made at the parameters of " + file.string()));
 
-  DesignEdits few;
-  few.edit("candidates", 200);
+  DesignEdits few = DesignEdits().edit("candidates", 200);
   const auto judged = [&](const Problem& problem) {
     return evaluate_problem(few.of(problem), poses_in(problem, plan_file), {}, Monitor{});
   };

@@ -16,6 +16,7 @@
 #include "posewright/support/json.hpp"
 #include "tests/formats/program_readers.hpp"
 #include "tests/formats/sequences.hpp"
+#include "tests/kit/message_of.hpp"
 
 namespace posewright {
 namespace {
@@ -186,12 +187,7 @@ TEST(PoseDocument, OfAUrscriptTakesJointsForJointsOnly) {
 TEST(PoseDocument, RefusesProgramsWithoutJointsAxesOrSettingsWithFileAndLine) {
   const auto message = [](const std::string& text, const std::string& name,
                           DocumentOptions options = {}) -> std::string {
-    try {
-      parse_document(text, name, six_joints(), options);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+    return message_of<InputError>([&] { parse_document(text, name, six_joints(), options); });
   };
   EXPECT_THAT(message("DEFDAT X\nENDDAT\n", "x.dat"), HasSubstr("x.dat: has neither points nor motions"));
   EXPECT_THAT(message("MODULE M\nENDMODULE\n", "m.mod"), HasSubstr("abb-rapid needs --coupling F"));
@@ -208,12 +204,8 @@ TEST(PoseDocument, RefusesProgramsWithoutJointsAxesOrSettingsWithFileAndLine) {
       parse_controller_settings("range_deg: [[-5, 5], [-5, 5], [-5, 5], [-5, 5], [-5, 5], [-5, 5]]\n", "k.yaml");
   const auto document = parse_document("DEFDAT X\n\nDECL E6AXIS XP={A1 1,A2 2,A3 3,A4 4,A5 4.9,A6 4}\nENDDAT\n",
                                        "x.dat", six_joints(), ranges);
-  try {
-    rewritten(*document, moved(document->poses()));
-    FAIL();
-  } catch (const CannotDo& error) {
-    EXPECT_THAT(error.what(), HasSubstr("x.dat:3: axis A5 of the controller would be at 5.186; k.yaml allows -5 to 5"));
-  }
+  EXPECT_THAT(message_of<CannotDo>([&] { rewritten(*document, moved(document->poses())); }),
+              HasSubstr("x.dat:3: axis A5 of the controller would be at 5.186; k.yaml allows -5 to 5"));
 }
 
 TEST(PoseDocument, OfAListKeepsCommentsColumnsUnitsAndLineEnds) {

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "posewright/support/error.hpp"
+#include "tests/kit/message_of.hpp"
 #include "tests/kit/temporary_folder.hpp"
 
 namespace posewright {
@@ -25,12 +26,7 @@ class ReadPoses : public testing::Test {
   }
   std::string error(const std::string& text, const std::string& format = "",
                     const std::vector<Coordinate>& coordinates = arm()) {
-    try {
-      read(text, format, coordinates);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "accepted";
+    return message_of<InputError>([&] { read(text, format, coordinates); }, "accepted");
   }
   TemporaryFolder folder_;
 };

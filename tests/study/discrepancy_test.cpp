@@ -45,9 +45,7 @@ class Discrepancies : public testing::Test {
     return read_problem(folder_.write("p.yaml", arm(design, more)));
   }
   static Plan plan(const Problem& problem, const std::string& criterion, const std::string& truth) {
-    DesignEdits options;
-    options.edit("criterion", criterion);
-    options.edit("truth", truth);
+    DesignEdits options = DesignEdits().edit("criterion", criterion).edit("truth", truth);
     return planned(problem, options);
   }
   TemporaryFolder folder_;
@@ -103,9 +101,7 @@ TEST_F(Discrepancies, TheEvaluationOfAPlanRepeatsItsFigures) {
   const Problem p = problem(six);
   for (const char* criterion : {"discriminate", "bias"}) {
     const Plan made = plan(p, criterion, "both");
-    DesignEdits options;
-    options.edit("criterion", criterion);
-    options.edit("truth", "both");
+    DesignEdits options = DesignEdits().edit("criterion", criterion).edit("truth", "both");
     const PoseListEvaluation again =
         evaluate_problem(options.of(p), given_poses(p, configurations_of(made)), {}, Monitor{});
     EXPECT_NEAR(again.plan.criterion_value, made.criterion_value, 1e-9 * std::abs(made.criterion_value));
@@ -126,8 +122,7 @@ TEST_F(Discrepancies, BiasIsTheErrorThatComparePredicts) {
     compare.variants = {"plain", "both"};
     compare.truth = "both";
     compare.plans.push_back({"mine", given_poses(p, configurations_of(made))});
-    DesignEdits few;
-    few.edit("candidates", 100);
+    DesignEdits few = DesignEdits().edit("candidates", 100);
     const Comparison c = compare_problem(few.of(p), compare, Monitor{});
     ASSERT_EQ(c.aliases.size(), 1U);
     const VariantAlias& alias = c.aliases.front();
@@ -149,9 +144,7 @@ TEST_F(Discrepancies, BiasIsTheErrorThatComparePredicts) {
 TEST_F(Discrepancies, BiasPlansErrLessThanPlansThatKnowOfNoiseAlone) {
   const Problem p = problem(six);
   EXPECT_GT(plan(p, "bias", "longer").criterion_value, [&] {
-    DesignEdits options;
-    options.edit("criterion", "bias");
-    options.edit("truth", "longer");
+    DesignEdits options = DesignEdits().edit("criterion", "bias").edit("truth", "longer");
     return evaluate_problem(options.of(p), given_poses(p, configurations_of(plan(p, "test_pose", "longer"))), {},
                             Monitor{})
         .plan.criterion_value;
@@ -163,11 +156,11 @@ TEST_F(Discrepancies, MeasuredPosesAndPriorsCountInBothCriteria) {
   const Plan first = plan(p, "discriminate", "both");
   for (const char* criterion : {"discriminate", "bias"})
     for (const bool prior : {false, true}) {
-      DesignEdits options;
-      options.edit("criterion", criterion);
-      options.edit("truth", "both");
-      options.edit("poses", 4);
-      options.edit("prior", prior ? "tolerance" : "none");
+      DesignEdits options = DesignEdits()
+                                .edit("criterion", criterion)
+                                .edit("truth", "both")
+                                .edit("poses", 4)
+                                .edit("prior", prior ? "tolerance" : "none");
       options.measured = given_poses(p, configurations_of(first));
       const Plan more = planned(p, options);
       EXPECT_EQ(more.discrimination->readings, 20 + (prior ? 3 : 0));
@@ -216,17 +209,13 @@ TEST_F(Discrepancies, WhatCannotBeToldIsSaidWithItsPlace) {
   EXPECT_THAT(said("truth: same, "), HasSubstr("p.yaml:11: truth 'same' has no effect that 'plain' does not estimate"));
   EXPECT_THAT(said("truth: denavit, "), HasSubstr("use different kinds of parameters"));
   EXPECT_THAT(said("truth: geared, criterion: compound, "), HasSubstr("needs a single fitted variant"));
-  DesignEdits unknown;
-  unknown.edit("truth", "nobody");
+  DesignEdits unknown = DesignEdits().edit("truth", "nobody");
   EXPECT_THAT(message<InputError>(problem(six), unknown), HasSubstr("nobody"));
   EXPECT_THROW(problem("{truth: nobody, " + rest), InputError);
 }
 
 TEST_F(Discrepancies, TooFewPosesForATestNameTheShortfall) {
-  DesignEdits options;
-  options.edit("poses", 2);
-  options.edit("truth", "geared");
-  options.edit("criterion", "discriminate");
+  DesignEdits options = DesignEdits().edit("poses", 2).edit("truth", "geared").edit("criterion", "discriminate");
   const Problem wider = problem("{variant: four, poses: 6, candidates: 100}",
                                 "  four: {parameters: [q1.offset, q2.offset, tool.x, q2.x]}\n");
   EXPECT_THAT(message<CannotDo>(wider, options),

@@ -17,6 +17,7 @@
 #include "posewright/tasks/evaluate_problem.hpp"
 #include "posewright/tasks/plan_problem.hpp"
 #include "tests/kit/design_edits.hpp"
+#include "tests/kit/message_of.hpp"
 #include "tests/kit/temporary_folder.hpp"
 
 namespace posewright {
@@ -77,12 +78,8 @@ class FixedPoses : public testing::Test {
     return plan_problem(problem(design + ", fixed: fixed.csv"), {}, Monitor{});
   }
   std::string refusal(const std::string& fixed, const std::string& more = "") {
-    try {
-      plan(fixed, "criterion: o1, poses: 4, candidates_from: list.csv" + more);
-      return "accepted";
-    } catch (const InputError& error) {
-      return error.what();
-    }
+    return message_of<InputError>([&] { plan(fixed, "criterion: o1, poses: 4, candidates_from: list.csv" + more); },
+                                  "accepted");
   }
   TemporaryFolder folder_;
 };
@@ -199,12 +196,8 @@ TEST_F(FixedPoses, APoseThatTheCellForbidsIsRefusedWithTheReason) {
   const Problem walled = read_problem(
       folder_.write("p.yaml", start + "workspace: {tool: {x: [-3 m, 1.5 m]}}\n" +
                                   "design: {criterion: o1, poses: 4, candidates: 60, fixed: fixed.csv}\n"));
-  try {
-    plan_problem(walled, {}, Monitor{});
-    FAIL() << "accepted";
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("fixed.csv:3: pose 2 cannot be fixed: "));
-  }
+  EXPECT_THAT(message_of<InputError>([&] { plan_problem(walled, {}, Monitor{}); }),
+              HasSubstr("fixed.csv:3: pose 2 cannot be fixed: "));
 }
 
 TEST_F(FixedPoses, PosesToJudgeByDoNotContainThem) {

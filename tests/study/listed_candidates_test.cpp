@@ -3,13 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <set>
 
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/results/plan.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/tasks/plan_problem.hpp"
+#include "tests/kit/message_of.hpp"
 #include "tests/kit/temporary_folder.hpp"
 
 namespace posewright {
@@ -45,12 +45,7 @@ class ListedCandidates : public testing::Test {
   }
   std::string refusal(const std::string& csv,
                       const std::string& design = "{criterion: o1, poses: 3, candidates_from: list.csv}") {
-    try {
-      plan(csv, design);
-      return "accepted";
-    } catch (const std::runtime_error& error) {
-      return error.what();
-    }
+    return message_of<std::runtime_error>([&] { plan(csv, design); }, "accepted");
   }
   TemporaryFolder folder_;
 };

@@ -72,8 +72,7 @@ const List ten = {{0.2, 1.1, 0}, {-1.3, 0.7, 1},  {1.5, -1.2, 0}, {-0.4, 1.8, 1}
                   {0.9, 0.5, 1}, {-1.8, -0.9, 0}, {0.25, 1, 1},   {1.1, 1.6, 0},  {-0.6, -1.4, 1}};
 
 TEST_F(OwnEffects, FiguresAreThoseOfGeneralisedLeastSquaresOfAllReadings) {
-  DesignEdits options;
-  options.edit("candidates", 200);
+  DesignEdits options = DesignEdits().edit("candidates", 200);
   const Problem p = problem(", unmodelled: 0.5 mm");
   const Plan plan = evaluate_problem(options.of(p), given_poses(p, ten), {}, Monitor{}).plan;
   const auto n = Eigen::Index(ten.size());

@@ -20,6 +20,7 @@
 #include "posewright/tasks/evaluate_problem.hpp"
 #include "tests/kit/design_edits.hpp"
 #include "tests/kit/example_problems.hpp"
+#include "tests/kit/message_of.hpp"
 #include "tests/kit/planar_arm.hpp"
 #include "tests/kit/pose_lists.hpp"
 #include "tests/kit/temporary_folder.hpp"
@@ -52,10 +53,20 @@ class UnmodelledEffects : public testing::Test {
         folder_.write("p.yaml", arm_with(unmodelled.empty() ? "" : ", unmodelled: " + unmodelled, design)));
   }
   static Plan judged(const Problem& problem, const List& list, const std::string& criterion = "o1") {
-    DesignEdits options;
-    options.edit("criterion", criterion);
-    options.edit("candidates", 200);
+    DesignEdits options = DesignEdits().edit("criterion", criterion).edit("candidates", 200);
     return evaluate_problem(options.of(problem), given_poses(problem, list), {}, Monitor{}).plan;
+  }
+  /// Random places, q1 within ±`reach`, in places.csv.
+  List written_places(std::uint64_t seed, int count, double reach) const {
+    List places;
+    std::string file = "q1 [rad],q2 [rad]\n";
+    Random random(seed, 1);
+    for (int i = 0; i < count; ++i) {
+      places.push_back({2 * reach * random.uniform() - reach, 0.3 + 1.5 * random.uniform()});
+      file += fmt::format("{:.17g},{:.17g}\n", places.back()[0], places.back()[1]);
+    }
+    folder_.write("places.csv", file);
+    return places;
   }
   TemporaryFolder folder_;
 };
@@ -77,30 +88,39 @@ double kernel(const std::vector<double>& a, const std::vector<double>& b, double
   return std::exp(-squares / (2 * length * length));
 }
 
+/// Jacobians of a list, one below the other.
+Eigen::MatrixXd jacobians(const List& list) {
+  Eigen::MatrixXd J(2 * list.size(), 3);
+  for (std::size_t i = 0; i < list.size(); ++i) J.middleRows(2 * Eigen::Index(i), 2) = jacobian(list[i]);
+  return J;
+}
+
+/// Covariances of an effect of unit size between its first axes at two lists of places.
+/// @param n, m  axes of a place of `from` and of `to`
+Eigen::MatrixXd kernels(const List& from, const List& to, double length, Eigen::Index n = 2, Eigen::Index m = 2) {
+  Eigen::MatrixXd K(n * Eigen::Index(from.size()), m * Eigen::Index(to.size()));
+  for (std::size_t i = 0; i < from.size(); ++i)
+    for (std::size_t k = 0; k < to.size(); ++k)
+      K.block(n * Eigen::Index(i), m * Eigen::Index(k), n, m) =
+          kernel(from[i], to[k], length) * Eigen::MatrixXd::Identity(n, m);
+  return K;
+}
+
 /// What generalised least squares of all readings gives, from definitions.
 struct Whole {
   Eigen::MatrixXd J, inverse, V;
   double length, size;
 
-  Whole(const List& list, double size_, double length_) : length(length_), size(size_) {
-    const auto n = Eigen::Index(list.size());
-    Eigen::MatrixXd covariance = sigma * sigma * Eigen::MatrixXd::Identity(2 * n, 2 * n);
-    J.resize(2 * n, 3);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      J.middleRows(2 * i, 2) = jacobian(list[std::size_t(i)]);
-      for (Eigen::Index k = 0; k < n; ++k)
-        covariance.block<2, 2>(2 * i, 2 * k) +=
-            size * size * kernel(list[std::size_t(i)], list[std::size_t(k)], length) * Eigen::Matrix2d::Identity();
-    }
-    inverse = covariance.inverse();
+  Whole(const List& list, double size_, double length_) : J(jacobians(list)), length(length_), size(size_) {
+    inverse =
+        (sigma * sigma * Eigen::MatrixXd::Identity(J.rows(), J.rows()) + size * size * kernels(list, list, length))
+            .inverse();
     V = (J.transpose() * inverse * J).inverse();
   }
 
   /// E‖J_x(θ̂ − θ) − δ(x)‖²; the arm's plane, and the effect across it that no parameter follows.
   double square_at(const std::vector<double>& x, const List& list) const {
-    Eigen::MatrixXd cross(J.rows(), 2);
-    for (std::size_t i = 0; i < list.size(); ++i)
-      cross.middleRows(2 * Eigen::Index(i), 2) = size * size * kernel(list[i], x, length) * Eigen::Matrix2d::Identity();
+    const Eigen::MatrixXd cross = size * size * kernels(list, {x}, length);
     const Eigen::MatrixXd A = jacobian(x), B = A * V * J.transpose() * inverse;
     return (A * V * A.transpose()).trace() - 2 * (B * cross).trace() + 3 * size * size;
   }
@@ -164,10 +184,7 @@ TEST_F(UnmodelledEffects, InterpolationAddsNothingAtAMeasuredPoseOfANoiselessIns
 double plain_square_at(const std::vector<double>& x, const List& list, double size) {
   const Whole whole(list, size, sixty_degrees);
   const Eigen::MatrixXd& J = whole.J;
-  Eigen::MatrixXd cross(J.rows(), 2);
-  for (std::size_t i = 0; i < list.size(); ++i)
-    cross.middleRows(2 * Eigen::Index(i), 2) =
-        size * size * kernel(list[i], x, sixty_degrees) * Eigen::Matrix2d::Identity();
+  const Eigen::MatrixXd cross = size * size * kernels(list, {x}, sixty_degrees);
   const Eigen::MatrixXd B = jacobian(x) * (J.transpose() * J).inverse() * J.transpose();
   return (B * whole.inverse.inverse() * B.transpose()).trace() - 2 * (B * cross).trace() + 3 * size * size;
 }
@@ -239,29 +256,16 @@ TEST_F(UnmodelledEffects, FirstFigureLeavesOutWhatTheBestBaseTakesUp) {
   const auto n = Eigen::Index(eight.size()), T = Eigen::Index(places.size());
   const double unit = sigma * std::sqrt(1.5);
   Eigen::MatrixXd J(2 * n, 5), A = Eigen::MatrixXd::Zero(3 * T, 2);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const auto own = jacobian(eight[std::size_t(i)]);
-    J.block<2, 2>(2 * i, 0).setIdentity();
-    J.block<2, 3>(2 * i, 2) = own;  // the first joint turns as the base does
-  }
+  // The first joint turns as the base does.
+  J << Eigen::Matrix2d::Identity().replicate(n, 1), jacobians(eight);
   for (Eigen::Index t = 0; t < T; ++t)
     A.block<2, 2>(3 * t, 0) = jacobian(places[std::size_t(t)]).rightCols<2>() / std::sqrt(double(T));
   J /= sigma;
   const Eigen::MatrixXd V = (J.transpose() * J).inverse();
   const Eigen::MatrixXd G = (V * J.transpose()).bottomRows(2) / sigma;
-  Eigen::MatrixXd of_poses(2 * n, 2 * n), between = Eigen::MatrixXd::Zero(2 * n, 3 * T), there(3 * T, 3 * T);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    for (Eigen::Index k = 0; k < n; ++k)
-      of_poses.block<2, 2>(2 * i, 2 * k) =
-          kernel(eight[std::size_t(i)], eight[std::size_t(k)], sixty_degrees) * Eigen::Matrix2d::Identity();
-    for (Eigen::Index t = 0; t < T; ++t)
-      between.block<2, 2>(2 * i, 3 * t) = kernel(eight[std::size_t(i)], places[std::size_t(t)], sixty_degrees) /
-                                          std::sqrt(double(T)) * Eigen::Matrix2d::Identity();
-  }
-  for (Eigen::Index t = 0; t < T; ++t)
-    for (Eigen::Index u = 0; u < T; ++u)
-      there.block<3, 3>(3 * t, 3 * u) = kernel(places[std::size_t(t)], places[std::size_t(u)], sixty_degrees) /
-                                        double(T) * Eigen::Matrix3d::Identity();
+  const Eigen::MatrixXd of_poses = kernels(eight, eight, sixty_degrees);
+  const Eigen::MatrixXd between = kernels(eight, places, sixty_degrees, 2, 3) / std::sqrt(double(T));
+  const Eigen::MatrixXd there = kernels(places, places, sixty_degrees, 3, 3) / double(T);
   const Eigen::MatrixXd S = by_base(places);
   const Eigen::MatrixXd P =
       Eigen::MatrixXd::Identity(3 * T, 3 * T) - S * S.completeOrthogonalDecomposition().pseudoInverse();
@@ -297,8 +301,7 @@ TEST_F(UnmodelledEffects, CalibrationPredictsTheErrorAtNewPosesByItsResiduals) {
   options.data = folder_.write("data.csv", data);
   options.prior = Prior::none;
   const Calibration found = calibrate_problem(p, options, Monitor{});
-  Eigen::Vector3d change;
-  for (Eigen::Index j = 0; j < 3; ++j) change[j] = found.fit.change[j];
+  const Eigen::Vector3d change = found.fit.change;
   double squares = 0;
   constexpr int judged_at = 500;
   for (int k = 0; k < judged_at; ++k) {
@@ -330,11 +333,7 @@ TEST_F(UnmodelledEffects, PlanOfFewPosesSaysThatItReliesOnTheModel) {
 /// log det of the covariance that readings at `at` are predicted with from those of `list`.
 double predictive_log_det(const List& at, const List& list, double size, double length) {
   const Whole known(list, size, length), there(at, size, length);
-  Eigen::MatrixXd cross(there.J.rows(), known.J.rows());
-  for (std::size_t i = 0; i < at.size(); ++i)
-    for (std::size_t k = 0; k < list.size(); ++k)
-      cross.block<2, 2>(2 * Eigen::Index(i), 2 * Eigen::Index(k)) =
-          size * size * kernel(at[i], list[k], length) * Eigen::Matrix2d::Identity();
+  const Eigen::MatrixXd cross = size * size * kernels(at, list, length);
   const Eigen::MatrixXd A = there.J - cross * known.inverse * known.J;
   return std::log((there.inverse.inverse() - cross * known.inverse * cross.transpose() + A * known.V * A.transpose())
                       .determinant());
@@ -347,21 +346,13 @@ TEST_F(UnmodelledEffects, ValidationPosesLieWhereTheFieldIsLeastCertain) {
   for (int i = 0; i < 8; ++i) corner.push_back({1.0 + 0.12 * i, 1.9 - 0.1 * i});
   const Plan plan = judged(p, corner);
   const Plan validation = plan_validation(p, {}, plan, 3, Monitor{});
-  int chosen = 0;
-  double least_of_all = 10;
-  for (const PlannedPose& pose : validation.poses) {
-    if (pose.measured) continue;
-    ++chosen;
-    for (const std::vector<double>& q : corner)
-      least_of_all =
-          std::min(least_of_all, std::hypot(pose.configuration[0].value - q[0], pose.configuration[1].value - q[1]));
-  }
-  EXPECT_EQ(chosen, 3);
-  EXPECT_GT(least_of_all, 1.0);
-  EXPECT_EQ(validation.criterion, "ds");
   List found;
   for (const PlannedPose& pose : validation.poses)
     if (!pose.measured) found.push_back({pose.configuration[0].value, pose.configuration[1].value});
+  EXPECT_EQ(found.size(), 3u);
+  for (const std::vector<double>& place : found)
+    for (const std::vector<double>& q : corner) EXPECT_GT(std::hypot(place[0] - q[0], place[1] - q[1]), 1.0);
+  EXPECT_EQ(validation.criterion, "ds");
   const double best = predictive_log_det(found, corner, 2e-3, 0.5);
   Random random(3, 1);
   for (int i = 0; i < 300; ++i) {
@@ -401,34 +392,17 @@ TEST_F(UnmodelledEffects, BoundHoldsForEverySetOfCandidates) {
 }
 
 TEST_F(UnmodelledEffects, BiasWithoutATruthIsTheErrorOfAPlainFitAtTheCandidates) {
-  List places;
-  std::string file = "q1 [rad],q2 [rad]\n";
-  Random random(7, 1);
-  for (int i = 0; i < 60; ++i) {
-    places.push_back({2 * random.uniform() - 1, 0.3 + 1.5 * random.uniform()});
-    file += fmt::format("{:.17g},{:.17g}\n", places.back()[0], places.back()[1]);
-  }
-  folder_.write("places.csv", file);
+  const List places = written_places(7, 60, 1.0);
   const Problem p = problem("{size: 0.2 mm}", "{variant: short, poses: 8, candidates_from: places.csv}");
-  DesignEdits bias;
-  bias.edit("criterion", "bias");
+  DesignEdits bias = DesignEdits().edit("criterion", "bias");
   const Plan plan = evaluate_problem(bias.of(p), given_poses(p, eight), {}, Monitor{}).plan;
 
   constexpr double size = 2e-4;
-  Eigen::MatrixXd J(16, 3), K(16, 16), at(16, 2);
-  for (Eigen::Index i = 0; i < 8; ++i) {
-    J.middleRows(2 * i, 2) = jacobian(eight[std::size_t(i)]);
-    for (Eigen::Index k = 0; k < 8; ++k)
-      K.block<2, 2>(2 * i, 2 * k) = size * size * kernel(eight[std::size_t(i)], eight[std::size_t(k)], sixty_degrees) *
-                                    Eigen::Matrix2d::Identity();
-  }
+  const Eigen::MatrixXd J = jacobians(eight), K = size * size * kernels(eight, eight, sixty_degrees);
   const Eigen::MatrixXd V = (J.transpose() * J).inverse(), takes = V * J.transpose();
   double noise = 0, all = 0;
   for (const std::vector<double>& place : places) {
-    const Eigen::MatrixXd A = jacobian(place);
-    for (Eigen::Index i = 0; i < 8; ++i)
-      at.middleRows(2 * i, 2) =
-          size * size * kernel(eight[std::size_t(i)], place, sixty_degrees) * Eigen::Matrix2d::Identity();
+    const Eigen::MatrixXd A = jacobian(place), at = size * size * kernels(eight, {place}, sixty_degrees);
     noise += sigma * sigma * (A * V * A.transpose()).trace();
     all += sigma * sigma * (A * V * A.transpose()).trace() +
            (A * takes * K * takes.transpose() * A.transpose()).trace() - 2 * (A * takes * at).trace() + 2 * size * size;
@@ -442,16 +416,14 @@ TEST_F(UnmodelledEffects, BiasWithoutATruthIsTheErrorOfAPlainFitAtTheCandidates)
 TEST_F(UnmodelledEffects, BiasWithoutATruthPlansForOneThatNobodyStated) {
   const Problem p = problem("", "{variant: plain, poses: 8, candidates: 200}");
   const auto best_by = [&](const std::string& criterion) {
-    DesignEdits options;
-    options.edit("criterion", criterion);
+    DesignEdits options = DesignEdits().edit("criterion", criterion);
     options.candidates_alone = true;
     return planned(p, options);
   };
   const Plan best = best_by("bias"), determinant = best_by("o1");
   EXPECT_FALSE(best.certificate.proved);
   const auto value = [&](const Plan& plan) {
-    DesignEdits bias;
-    bias.edit("criterion", "bias");
+    DesignEdits bias = DesignEdits().edit("criterion", "bias");
     return evaluate_problem(bias.of(p), planned_poses(p, plan), {}, Monitor{}).plan.criterion_value;
   };
   const double here = value(best), there = value(determinant);
@@ -460,14 +432,7 @@ TEST_F(UnmodelledEffects, BiasWithoutATruthPlansForOneThatNobodyStated) {
 }
 
 TEST_F(UnmodelledEffects, BiasAddsToAListThePoseThatHelpsMostWithWhatIsMeasuredCountedOnce) {
-  std::string file = "q1 [rad],q2 [rad]\n";
-  List places;
-  Random random(11, 1);
-  for (int i = 0; i < 15; ++i) {
-    places.push_back({4 * random.uniform() - 2, 0.3 + 1.5 * random.uniform()});
-    file += fmt::format("{:.17g},{:.17g}\n", places.back()[0], places.back()[1]);
-  }
-  folder_.write("places.csv", file);
+  const List places = written_places(11, 15, 2.0);
   const Problem p = problem("{size: 1 mm}", "{variant: short, poses: 5, candidates_from: places.csv, criterion: bias}");
   EvaluateOptions options;
   options.run.measured = given_poses(p, {{1.9, 0.4}, {1.8, 0.5}, {1.7, 1.7}, {1.6, 0.6}});
@@ -509,8 +474,7 @@ TEST_F(UnmodelledEffects, SpreadsPosesThatADeterminantPutsIntoACorner) {
 
 TEST_F(UnmodelledEffects, FormFollowsTheNumberOfPosesUnlessACriterionIsNamed) {
   const auto criterion_of = [&](const std::string& design, const std::string& named) {
-    DesignEdits options;
-    options.edit("criterion", named);
+    DesignEdits options = DesignEdits().edit("criterion", named);
     const Plan plan = planned(problem("auto", design), options);
     const std::vector<std::string>& notes = plan.statistics.notes;
     return plan.criterion + (notes.empty() || !notes.back().starts_with("Criterion") ? "" : " " + notes.back());
@@ -558,8 +522,7 @@ TEST_F(UnmodelledEffects, AnEffectOfNoSizeIsPlannedForByTheDeterminantWhichIsSai
   std::find_if(none.variants.begin(), none.variants.end(), [](const VariantSpec& v) {
     return v.name == "short";
   })->unmodelled->size = 0.0;
-  DesignEdits o1;
-  o1.edit("criterion", "o1");
+  DesignEdits o1 = DesignEdits().edit("criterion", "o1");
   const Problem plain = problem("", design);
   const Plan chosen = planned(none, {}), plan = planned(plain, o1);
   EXPECT_EQ(chosen.statistics.notes.back(), "Criterion o1, since the unmodelled effect has size 0.");
@@ -568,14 +531,9 @@ TEST_F(UnmodelledEffects, AnEffectOfNoSizeIsPlannedForByTheDeterminantWhichIsSai
 
 TEST_F(UnmodelledEffects, AutoIsThePlanOfTheCriterionThatItNames) {
   const auto values = [&](const std::string& criterion, int poses) {
-    DesignEdits options;
-    options.edit("criterion", criterion);
-    options.edit("poses", poses);
-    return planned_poses(
-               problem("", "{variant: plain, poses: 8, candidates: 100, restarts: 2, method: exchange}"),
-               planned(problem("", "{variant: plain, poses: 8, candidates: 100, restarts: 2, method: exchange}"),
-                       options))
-        .configurations;
+    DesignEdits options = DesignEdits().edit("criterion", criterion).edit("poses", poses);
+    const Problem p = problem("", "{variant: plain, poses: 8, candidates: 100, restarts: 2, method: exchange}");
+    return planned_poses(p, planned(p, options)).configurations;
   };
   EXPECT_EQ(values("auto", 8), values("bias", 8));
   EXPECT_EQ(values("auto", 2), values("o1", 2));
@@ -609,12 +567,7 @@ TEST_F(UnmodelledEffects, FilesStateThemAndTheEvaluationOfAPlanRepeatsThem) {
 
 TEST_F(UnmodelledEffects, WhatCannotBeIsToldInOneLine) {
   const auto message = [&](const std::string& unmodelled) -> std::string {
-    try {
-      judged(problem(unmodelled), eight);
-      return "";
-    } catch (const std::exception& error) {
-      return error.what();
-    }
+    return message_of([&] { judged(problem(unmodelled), eight); });
   };
   EXPECT_THAT(message("{size: 0 mm}"), HasSubstr("p.yaml:7: variants.short.unmodelled.size"));
   EXPECT_THAT(message("{size: -1 mm}"), HasSubstr("unmodelled.size"));
@@ -629,19 +582,14 @@ TEST(UnmodelledEffect, OfAllLengthsThatTheParametersTakeUpIsRefused) {
   Problem problem = example("real_data/rosi_positioner/problem.yaml");
   problem.variants.front().unmodelled = UnmodelledSpec{1e-3, 100.0, 0.0, 7};
   problem.design.candidates.value = 200;
-  try {
-    evaluate_problem(problem, given_poses(problem, list_of(problem, 10)), {}, Monitor{});
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("problem.yaml:7: an unmodelled effect with a length of"));
-  }
+  EXPECT_THAT(message_of<InputError>(
+                  [&] { evaluate_problem(problem, given_poses(problem, list_of(problem, 10)), {}, Monitor{}); }),
+              HasSubstr("problem.yaml:7: an unmodelled effect with a length of"));
 }
 
 TEST(UnmodelledEffect, WithoutATipInTheReadingsIsNoneThatAutoPlansFor) {
   Problem problem = example("kr270/compensator_geometry.yaml");
-  DesignEdits options;
-  options.edit("criterion", "auto");
-  options.edit("candidates", 100);
+  DesignEdits options = DesignEdits().edit("criterion", "auto").edit("candidates", 100);
   const Plan plan = planned(problem, options);
   EXPECT_EQ(plan.criterion, "o1");
   EXPECT_EQ(plan.statistics.notes.back(),
@@ -651,28 +599,21 @@ TEST(UnmodelledEffect, WithoutATipInTheReadingsIsNoneThatAutoPlansFor) {
 TEST(UnmodelledEffect, IsRefusedWhereNoTipIsSeen) {
   Problem problem = example("kr270/compensator_geometry.yaml");
   problem.variants.front().unmodelled = UnmodelledSpec{};
-  DesignEdits options;
-  options.edit("candidates", 100);
+  DesignEdits options = DesignEdits().edit("candidates", 100);
   EXPECT_THROW(planned(problem, options), CannotDo);
 }
 
 TEST(UnmodelledEffect, OfAnglesAloneIsNeitherExpectedNorAccepted) {
   Problem problem = example("instruments/level.yaml");
-  DesignEdits options;
-  options.edit("candidates", 60);
-  options.edit("method", "exchange");
+  DesignEdits options = DesignEdits().edit("candidates", 60).edit("method", "exchange");
   const Plan plan = planned(problem, options);
   // Effects come in multiples of the noise of a position, which no reading has.
   EXPECT_FALSE(plan.expected.has_value());
   EXPECT_EQ(plan_json(plan).find("nan"), std::string::npos);
   for (const UnmodelledSpec& spec : {UnmodelledSpec{{}, {}, 0.0, 14}, UnmodelledSpec{1e-4, 0.5, 0.0, 14}}) {
     problem.variants.front().unmodelled = spec;
-    try {
-      planned(problem, options);
-      ADD_FAILURE();
-    } catch (const InputError& error) {
-      EXPECT_THAT(error.what(), HasSubstr("level.yaml:14: an unmodelled effect displaces the tip"));
-    }
+    EXPECT_THAT(message_of<InputError>([&] { planned(problem, options); }),
+                HasSubstr("level.yaml:14: an unmodelled effect displaces the tip"));
   }
 }
 

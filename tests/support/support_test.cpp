@@ -4,7 +4,6 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
-#include <numeric>
 #include <stdexcept>
 
 #include "posewright/support/error.hpp"

@@ -1,10 +1,8 @@
 #include "posewright/tasks/check_sequence.hpp"
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <numbers>
 
 #include "posewright/formats/pose_formats.hpp"
@@ -19,6 +17,7 @@
 #include "posewright/tasks/plan_problem.hpp"
 #include "posewright/workspace/workspace.hpp"
 #include "tests/kit/design_edits.hpp"
+#include "tests/kit/message_of.hpp"
 #include "tests/kit/temporary_folder.hpp"
 #include "tests/kit/urdf_text.hpp"
 
@@ -68,12 +67,8 @@ class OnARail : public testing::Test {
   }
 
   std::string verdict(const json& file, const Problem& problem) const {
-    try {
-      checked_sequence(problem, parse_sequence(file.dump(), "r.json"));
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "accepted";
+    return message_of<InputError>([&] { checked_sequence(problem, parse_sequence(file.dump(), "r.json")); },
+                                  "accepted");
   }
 
   TemporaryFolder folder_;

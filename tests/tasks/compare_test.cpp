@@ -24,9 +24,7 @@ using testing::HasSubstr;
 
 /// The problem with few candidates and one start, and so many poses.
 Problem quick(Problem problem, int poses = 0) {
-  DesignEdits edits;
-  edits.edit("candidates", 200);
-  edits.edit("restarts", 1);
+  DesignEdits edits = DesignEdits().edit("candidates", 200).edit("restarts", 1);
   if (poses > 0) edits.edit("poses", poses);
   return edits.of(std::move(problem));
 }

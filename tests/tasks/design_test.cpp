@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -16,6 +15,7 @@
 #include "posewright/tasks/plan_problem.hpp"
 #include "tests/kit/design_edits.hpp"
 #include "tests/kit/example_problems.hpp"
+#include "tests/kit/message_of.hpp"
 #include "tests/kit/pose_lists.hpp"
 #include "tests/kit/recompute.hpp"
 #include "tests/kit/temporary_folder.hpp"
@@ -71,10 +71,7 @@ TEST_P(PlanarChain, ReachesTheAnalyticOptimumAndTheCertificateSaysSo) {
 INSTANTIATE_TEST_SUITE_P(Links, PlanarChain, testing::Values(2, 3));
 
 DesignEdits quick(int candidates = 400) {
-  DesignEdits options;
-  options.edit("candidates", candidates);
-  options.edit("restarts", 2);
-  options.edit("method", "exchange");
+  DesignEdits options = DesignEdits().edit("candidates", candidates).edit("restarts", 2).edit("method", "exchange");
   return options;
 }
 
@@ -454,12 +451,10 @@ TEST(Evaluate, BadListsNameFileLineAndWhatIsAllowed) {
            Bad{"{\"poses\": 3}", "bad.csv: is not a plan"},
            Bad{"{\"poses\": []}", "bad.csv: has no poses"},
        }) {
-    try {
-      evaluate_problem(problem, poses_in(problem, folder.write("bad.csv", bad.text)), {}, Monitor{});
-      FAIL() << "accepted: " << bad.text;
-    } catch (const InputError& error) {
-      EXPECT_THAT(error.what(), HasSubstr(bad.message));
-    }
+    EXPECT_THAT(message_of<InputError>([&] {
+                  evaluate_problem(problem, poses_in(problem, folder.write("bad.csv", bad.text)), {}, Monitor{});
+                }),
+                HasSubstr(bad.message));
   }
   EXPECT_THROW(evaluate_problem(problem, poses_in(problem, folder.write("few.csv", "q1,q2\n1,2\n")), {}, Monitor{}),
                CannotDo);

@@ -15,6 +15,7 @@
 #include "posewright/tasks/plan_problem.hpp"
 #include "tests/kit/design_edits.hpp"
 #include "tests/kit/example_problems.hpp"
+#include "tests/kit/message_of.hpp"
 #include "tests/kit/recompute.hpp"
 
 namespace posewright {
@@ -33,8 +34,7 @@ bool is_moved(const std::string& file) {
 
 TEST_P(Examples, ArePlannedAndTheStatedLogDetIsThatOfTheWrittenPoses) {
   const Problem problem = example(GetParam());
-  DesignEdits options;
-  options.edit("candidates", 100);
+  DesignEdits options = DesignEdits().edit("candidates", 100);
   if (problem.workspace.motion.reachable) options.edit("candidates", 40);  // a way to every one of them is sought
   options.edit("restarts", 1);
   if (!is_moved(GetParam())) options.edit("method", "exchange");
@@ -156,14 +156,8 @@ TEST(Telescope, SevenParametersALegNeedSevenPoses) {
 std::string refusal(const std::string& file, const std::function<void(Problem&)>& change) {
   Problem problem = read_problem(fs::path(POSEWRIGHT_SOURCE_DIR) / "examples" / file);
   change(problem);
-  DesignEdits options;
-  options.edit("candidates", 100);
-  try {
-    planned(problem, options);
-    return "accepted";
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
+  DesignEdits options = DesignEdits().edit("candidates", 100);
+  return message_of<std::runtime_error>([&] { planned(problem, options); }, "accepted");
 }
 
 TEST(Refusals, EachSaysWhatDoesNotFit) {
@@ -209,9 +203,7 @@ TEST(Refusals, EachSaysWhatDoesNotFit) {
 TEST(ListedPositions, OnePoseForEachSuffices) {
   // Five positions of one joint, nine parameters, nine rows: one pose at each position determines everything.
   EXPECT_EQ(observed("kr270/elastostatic.yaml", "compliances").smallest_poses, 5);
-  DesignEdits options;
-  options.edit("candidates", 1000);
-  options.edit("poses", 5);
+  DesignEdits options = DesignEdits().edit("candidates", 1000).edit("poses", 5);
   const Plan plan = planned(example("kr270/elastostatic.yaml"), options);
   std::vector<double> second;
   for (const PlannedPose& pose : plan.poses) second.push_back(pose.configuration[1].value);
@@ -288,10 +280,7 @@ TEST(BallBar, BothEndsCarryTheSameLoad) {
   light.name = "light", heavy.name = "heavy", heavy.mass = 100;
   springs.loads = {light, heavy};
   std::get<SerialArmSpec>(problem.robot).elastostatic = springs;
-  DesignEdits options;
-  options.edit("method", "exchange");
-  options.edit("candidates", 150);
-  options.edit("restarts", 1);
+  DesignEdits options = DesignEdits().edit("method", "exchange").edit("candidates", 150).edit("restarts", 1);
   const Plan plan = planned(problem, options);
   for (const PlannedPose& pose : plan.poses) {
     EXPECT_EQ(pose.configuration.size(), 12U);

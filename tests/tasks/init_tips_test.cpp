@@ -8,6 +8,7 @@
 #include "posewright/tasks/init_problem.hpp"
 #include "posewright/tasks/observe_problem.hpp"
 #include "tests/kit/example_problems.hpp"
+#include "tests/kit/message_of.hpp"
 
 namespace posewright {
 namespace {
@@ -85,12 +86,7 @@ TEST(InitTips, ACameraInTheHeadIsInOnePlaceForBothBoards) {
 
 TEST(InitTips, TipsThatAreNoTwoChainsOfOneRobotAreRefused) {
   const auto refusal = [](const InitFacts& facts) -> std::string {
-    try {
-      init_problem(facts, made, Monitor{});
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "accepted";
+    return message_of<InputError>([&] { init_problem(facts, made, Monitor{}); }, "accepted");
   };
   EXPECT_THAT(refusal(humanoid({"l_hand", "l_hand"})), HasSubstr("--tip 'l_hand' is given twice"));
   EXPECT_THAT(refusal(humanoid({"l_hand", "r_foot"})), HasSubstr("has no link 'r_foot'"));

@@ -4,9 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <nlohmann/json.hpp>
-
 #include "posewright/lists/measured_data.hpp"
 #include "posewright/lists/read_poses.hpp"
 #include "posewright/model/model_factory.hpp"

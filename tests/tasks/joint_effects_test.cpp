@@ -16,6 +16,7 @@
 #include "posewright/support/error.hpp"
 #include "posewright/tasks/calibrate_problem.hpp"
 #include "tests/kit/example_problems.hpp"
+#include "tests/kit/message_of.hpp"
 #include "tests/kit/temporary_folder.hpp"
 #include "tests/kit/virtual_data.hpp"
 
@@ -235,13 +236,10 @@ std::string refusal(const std::string& effects) {
                            "\n  joint_effects: " + effects +
                            "\nmeasurement: {type: points, targets: {A: [0, 0, 0.1]}, device: {type: isotropic, noise: "
                            "0.1 mm}}\nvariants: {v: {parameters: auto}}\n";
-  try {
+  return message_of<InputError>([&] {
     const Problem problem = parse_problem(text, "p.yaml");
     make_model(problem);
-    return "";
-  } catch (const InputError& error) {
-    return error.what();
-  }
+  });
 }
 
 TEST(JointEffects, WhatMakesNoSenseIsRefusedWithItsLine) {

@@ -27,6 +27,7 @@
 #include "posewright/tasks/calibrate_problem.hpp"
 #include "posewright/tasks/next_poses.hpp"
 #include "posewright/tasks/next_state.hpp"
+#include "tests/kit/message_of.hpp"
 #include "tests/kit/temporary_folder.hpp"
 
 namespace posewright {
@@ -508,14 +509,9 @@ TEST_F(NextPosesOfAnArm, ARowOfAnotherRobotIsNamedByItsLine) {
   EXPECT_NO_THROW(next_poses(p, options(text), Monitor{}));
   const Vector4d other(0.1, -0.2, 0.15, 0.1);
   text += row(17, {0.7, 0.9}, tip({0.7, 0.9}, other)) + row(18, {-1.2, 0.1}, tip({-1.2, 0.1}, other));
-  try {
-    next_poses(p, options(text), Monitor{});
-    FAIL() << "accepted";
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("measured.csv:18: T1."));
-    EXPECT_THAT(error.what(), HasSubstr("from its estimate by the 16 poses before"));
-    EXPECT_THAT(error.what(), HasSubstr("a row of another robot"));
-  }
+  EXPECT_THAT(message_of<InputError>([&] { next_poses(p, options(text), Monitor{}); }),
+              testing::AllOf(HasSubstr("measured.csv:18: T1."), HasSubstr("from its estimate by the 16 poses before"),
+                             HasSubstr("a row of another robot")));
 }
 
 TEST(WholeLines, HalfALineIsLeftUntilItHasAnEnd) {
@@ -530,12 +526,7 @@ TEST(WholeLines, HalfALineIsLeftUntilItHasAnEnd) {
 class NextStates : public NextPosesOfAnArm {
  protected:
   std::string refusal(const NextState& state, const Problem& p, const std::string& text) const {
-    try {
-      require_continues(state, "s.json", p, "measured.csv", text);
-      return "accepted";
-    } catch (const InputError& error) {
-      return error.what();
-    }
+    return message_of<InputError>([&] { require_continues(state, "s.json", p, "measured.csv", text); }, "accepted");
   }
 };
 

@@ -54,8 +54,7 @@ class RegisteredCriteria : public testing::Test {
  protected:
   RegisteredCriteria() { own_rows(); }
   Plan plan(const std::string& criterion) const {
-    DesignEdits options;
-    options.edit("criterion", criterion);
+    DesignEdits options = DesignEdits().edit("criterion", criterion);
     if (find_criterion(criterion)->needs_truth) options.edit("truth", "links_and_offsets");
     return planned(problem_, options);
   }
@@ -77,9 +76,7 @@ TEST_F(RegisteredCriteria, OfAnyNameGiveThePlanValueBoundAndEfficiencyOfTheirOwn
 TEST_F(RegisteredCriteria, OfAnyNameAreScoredAlikeInAListThatIsGiven) {
   const Plan made = plan("o1");
   for (const CriterionEntry& entry : own_rows()) another_name(entry);
-  DesignEdits options;
-  options.edit("criterion", "registered_a");
-  options.edit("truth", "links_and_offsets");
+  DesignEdits options = DesignEdits().edit("criterion", "registered_a").edit("truth", "links_and_offsets");
   const PoseListEvaluation e = evaluate_problem(options.of(problem_), planned_poses(problem_, made), {}, Monitor{});
   const auto score = [&](const std::string& name) {
     for (const CriterionScore& s : e.scores)

@@ -1,7 +1,6 @@
 // Plans for robots drawn from the tolerances: the search against all plans that there are, figures against the
 // definition, drawn robots against models that were built with other nominal values.
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -22,6 +21,7 @@
 #include "posewright/tasks/plan_problem.hpp"
 #include "tests/kit/design_edits.hpp"
 #include "tests/kit/example_problems.hpp"
+#include "tests/kit/message_of.hpp"
 #include "tests/kit/planar_arm.hpp"
 #include "tests/kit/random_blocks.hpp"
 #include "tests/kit/temporary_folder.hpp"
@@ -247,8 +247,7 @@ TEST_F(DrawnRobotsOfProblems, SmallTolerancesAreNotWorthAPlanOfTheirOwn) {
 
 TEST_F(DrawnRobotsOfProblems, ALegThatIsMovedByItsActuatorsStandsWhereTheDrawnRobotSettles) {
   const Problem problem = example("telescope/problem.yaml");
-  DesignEdits options;
-  options.edit("candidates", 30);
+  DesignEdits options = DesignEdits().edit("candidates", 30);
   options.seed = 1;
   const Problem edited = options.of(problem);
   const Study study = make_study(resolve(edited, options, Monitor()), Monitor());
@@ -275,13 +274,8 @@ TEST_F(DrawnRobotsOfProblems, ALegThatIsMovedByItsActuatorsStandsWhereTheDrawnRo
 
 TEST_F(DrawnRobotsOfProblems, WhatDoesNotGoTogetherIsRefusedWithItsLine) {
   const auto refused = [&](const std::string& more, const std::string& text) {
-    try {
-      plan_problem(arm(more), {}, Monitor());
-      FAIL() << more;
-    } catch (const InputError& error) {
-      EXPECT_THAT(error.what(), HasSubstr(text));
-      EXPECT_THAT(error.what(), HasSubstr("problem.yaml:5"));
-    }
+    EXPECT_THAT(message_of<InputError>([&] { plan_problem(arm(more), {}, Monitor()); }),
+                testing::AllOf(HasSubstr(text), HasSubstr("problem.yaml:5")));
   };
   refused(", robust: {draws: 1}", "draws");
   refused(", robust: {measure: median}", "is no measure");

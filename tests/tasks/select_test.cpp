@@ -10,6 +10,7 @@
 #include "posewright/support/error.hpp"
 #include "posewright/support/random.hpp"
 #include "posewright/tasks/select_blocks.hpp"
+#include "tests/kit/message_of.hpp"
 
 namespace posewright {
 namespace {
@@ -128,12 +129,7 @@ TEST(Select, GivenBlocksThatMakeNoSenseAreRefused) {
     options.poses = 4;
     options.fixed = fixed;
     options.measured = measured;
-    try {
-      select_blocks(random_blocks(), options, Monitor{});
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+    return message_of<InputError>([&] { select_blocks(random_blocks(), options, Monitor{}); });
   };
   EXPECT_EQ(refusal({1}, {2}), "");
   EXPECT_THAT(refusal({12}, {}), HasSubstr("there is no block 12; 0 to 11"));

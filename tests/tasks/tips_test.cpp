@@ -22,6 +22,7 @@
 #include "posewright/tasks/observe_problem.hpp"
 #include "posewright/tasks/plan_problem.hpp"
 #include "tests/kit/example_problems.hpp"
+#include "tests/kit/message_of.hpp"
 #include "tests/kit/recompute.hpp"
 #include "tests/kit/three_tips.hpp"
 #include "tests/kit/virtual_data.hpp"
@@ -35,12 +36,7 @@ using testing::Not;
 
 template <class Call>
 std::string tips_complaint(const Call& call) {
-  try {
-    call();
-    return "accepted";
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
+  return message_of<std::runtime_error>([&] { call(); }, "accepted");
 }
 
 Eigen::MatrixXd whole_information(const IdentificationModel& model, const std::vector<double>& q) {

@@ -2,7 +2,6 @@
 
 #include <cstring>
 
-#include "arguments.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "keywords.hpp"
@@ -115,25 +114,10 @@ void bind_blocks_class(py::module_& m) {
           "values", [](const py::object& self) { return view_of(*self.cast<const Blocks&>().array, self); },
           "n × r × m, without a copy")
       .def_property_readonly(
-          "parameters",
-          [](const Blocks& b) {
-            std::vector<PlannedParameter> parameters;
-            for (const Parameter& p : b.parameters) parameters.push_back({p, "", std::nullopt, ""});
-            return parameters;
-          },
+          "parameters", [](const Blocks& b) { return of_each(b.parameters, unplanned); },
           "labels of the columns, nuisance first")
-      .def_property_readonly("names",
-                             [](const Blocks& b) {
-                               std::vector<std::string> names;
-                               for (const Parameter& p : b.parameters) names.push_back(p.name);
-                               return names;
-                             })
-      .def_property_readonly("units",
-                             [](const Blocks& b) {
-                               std::vector<std::string> units;
-                               for (const Parameter& p : b.parameters) units.push_back(p.unit);
-                               return units;
-                             })
+      .def_property_readonly("names", [](const Blocks& b) { return of_each(b.parameters, &Parameter::name); })
+      .def_property_readonly("units", [](const Blocks& b) { return of_each(b.parameters, &Parameter::unit); })
       .def_readonly("nuisance", &Blocks::nuisance, "how many leading columns are nuisance")
       .def_property_readonly(
           "shape",

@@ -1,7 +1,7 @@
 #include <pybind11/stl.h>
 
-#include "arguments.hpp"
 #include "bindings.hpp"
+#include "keywords.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/workspace/candidates.hpp"
 
@@ -139,12 +139,7 @@ and has exactly the plan's.)")
           "coordinates", [](const GivenModel& g) { return g.variant.workspace->coordinates(); },
           "What a configuration consists of, with the limits in force.")
       .def_property_readonly(
-          "parameters",
-          [](const GivenModel& g) {
-            std::vector<PlannedParameter> parameters;
-            for (const Parameter& p : g.variant.columns.parameters) parameters.push_back({p, "", std::nullopt, ""});
-            return parameters;
-          },
+          "parameters", [](const GivenModel& g) { return of_each(g.variant.columns.parameters, unplanned); },
           "Labels of the columns, nuisance first.")
       .def_property_readonly(
           "nuisance", [](const GivenModel& g) { return g.variant.columns.nuisance; }, "How many columns are nuisance.")

@@ -87,11 +87,7 @@ void bind_observation(py::module_& m) {
           "singular_values", [](const O& o) { return array_of(o.identifiability.singular_values); },
           "of G with columns in units of tolerance, descending")
       .def_property_readonly(
-          "parameters",
-          [](const O& o) {
-            return of_each(o.parameters, [](const Parameter& p) { return PlannedParameter{p, "", std::nullopt, ""}; });
-          },
-          "all free ones, nuisance first")
+          "parameters", [](const O& o) { return of_each(o.parameters, unplanned); }, "all free ones, nuisance first")
       .def_property_readonly(
           "kept", [](const O& o) { return of_each(o.kept, &Parameter::name); }, "names of the independent ones")
       .def_property_readonly("dependencies",

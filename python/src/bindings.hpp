@@ -3,6 +3,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
+#include <atomic>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -14,11 +15,43 @@
 #include "posewright/problem/problem.hpp"
 #include "posewright/results/plan.hpp"
 #include "posewright/study/variant.hpp"
-#include "watch.hpp"
+#include "posewright/support/monitor.hpp"
+#include "posewright/support/result_store.hpp"
 
 namespace posewright::python {
 
 namespace py = pybind11;
+
+/// Effect of Ctrl-C on a computation.
+enum class OnInterrupt { keep_best, raise };
+
+/// A long computation as Python sees it: it runs on a thread of its own without the interpreter's lock, while the
+/// calling thread looks for signals; progress calls a Python function.
+class Watch {
+ public:
+  /// @param time_limit  s; none: no limit. Throws InputError unless it is positive.
+  /// @param progress    called with a Progress, or None
+  Watch(std::optional<double> time_limit, py::object progress);
+
+  /// Runs the work. Throws what it throws, what the progress function raised, and KeyboardInterrupt: with keep_best
+  /// only where Ctrl-C came twice or nothing was found yet; else it warns that the result is the best so far.
+  void run(const std::function<void(const Monitor&)>& work, OnInterrupt on_interrupt);
+
+ private:
+  void report(const Progress& progress);
+  bool is_due(const Progress& progress);
+  void look_for_signals();
+  void finish(const std::exception_ptr& error, OnInterrupt on_interrupt);
+
+  std::optional<FolderStore> store_;
+  Monitor monitor_;
+  py::object progress_;
+  std::atomic<bool> stop_{false};
+  std::optional<py::error_already_set> raised_;  // by the progress function or a signal handler
+  int interrupts_ = 0;
+  Monitor::Clock::time_point last_{};
+  std::string stage_;
+};
 
 /// A problem, and what its lines stand for where it was not a file.
 struct GivenProblem {
@@ -78,6 +111,8 @@ py::dict dict_of(const List& list, Key key, Value value) {
   for (const auto& entry : list) result[py::cast(std::invoke(key, entry))] = std::invoke(value, entry);
   return result;
 }
+/// As Python sees a parameter for which nothing is planned.
+inline PlannedParameter unplanned(const Parameter& label) { return {label, "", std::nullopt, ""}; }
 /// N × n, SI, without load cases and stations.
 py::array_t<double> pose_configurations(const std::vector<PlannedPose>& poses);
 
@@ -93,6 +128,7 @@ py::dict indices_dict(const ObservabilityIndices& indices);
 std::string plan_line(const Plan& plan);
 
 void bind_errors(py::module_& m);
+void bind_progress(py::module_& m);
 void bind_problem(py::module_& m);
 void bind_model(py::module_& m);
 void bind_plan(py::module_& m);

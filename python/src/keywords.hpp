@@ -11,6 +11,15 @@
 
 namespace posewright::python {
 
+constexpr int most_candidates = 10'000'000, most_threads = 4096;
+
+/// Throws InputError "NAME is VALUE; LOWER to UPPER is allowed".
+int checked(const std::string& name, long long value, int lower, int upper);
+/// None: not said; else 1 to `upper`.
+std::optional<int> optional_number(const py::object& value, const std::string& name, int upper, int lower = 1);
+/// From 0 up. Throws InputError for other numbers.
+std::uint64_t seed_of(const py::object& value);
+
 /// Keywords of a call: options of a command, keys of the design, seed, threads, time limit and progress. None, an empty
 /// text and a flag that is false: not given.
 class Keywords {

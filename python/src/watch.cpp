@@ -1,5 +1,3 @@
-#include "watch.hpp"
-
 #include <pybind11/stl.h>
 
 #include <condition_variable>
@@ -7,6 +5,7 @@
 #include <mutex>
 #include <thread>
 
+#include "bindings.hpp"
 #include "posewright/support/error.hpp"
 
 namespace posewright::python {

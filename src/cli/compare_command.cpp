@@ -11,7 +11,6 @@
 #include "posewright/tasks/compare_problem.hpp"
 #include "problem_source.hpp"
 #include "session.hpp"
-#include "task_options.hpp"
 #include "terminal.hpp"
 
 namespace posewright::cli {

@@ -13,7 +13,6 @@
 #include "posewright/tasks/plan_fleet.hpp"
 #include "problem_source.hpp"
 #include "session.hpp"
-#include "task_options.hpp"
 #include "terminal.hpp"
 #include "write_result.hpp"
 

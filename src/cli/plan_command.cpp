@@ -3,7 +3,7 @@
 #include "posewright/options/tables.hpp"
 #include "posewright/tasks/plan_problem.hpp"
 #include "problem_source.hpp"
-#include "task_options.hpp"
+#include "session.hpp"
 #include "write_result.hpp"
 
 namespace posewright::cli {

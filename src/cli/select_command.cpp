@@ -3,7 +3,7 @@
 #include "command.hpp"
 #include "posewright/options/tables.hpp"
 #include "posewright/tasks/select_blocks.hpp"
-#include "task_options.hpp"
+#include "session.hpp"
 #include "terminal.hpp"
 #include "write_result.hpp"
 

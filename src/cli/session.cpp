@@ -3,13 +3,62 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
+#include <string_view>
 
+#include "posewright/support/file.hpp"
+#include "posewright/support/sha256.hpp"
+#include "processes.hpp"
 #include "signals.hpp"
-#include "task_options.hpp"
 #include "terminal.hpp"
 
 namespace posewright::cli {
+namespace {
+
+// They change how a result is made, shown or kept, and not the result.
+constexpr auto of_no_account = std::to_array<std::string_view>(
+    {"threads", "json", "markdown", "quiet", "verbose", "no-cache", "output", "output-dir", "poses-csv", "force",
+     "resume", "shard", "time-limit", "data", "positional"});
+
+/// Identity of the computation: command, options and all files read.
+std::string computation(const po::variables_map& values, const std::string& command, const std::filesystem::path& log) {
+  std::string text = command + "\n";
+  for (const auto& [name, value] : values) {
+    if (std::find(of_no_account.begin(), of_no_account.end(), name) != of_no_account.end()) continue;
+    text += name;
+    if (const auto* one = boost::any_cast<std::string>(&value.value())) text += " " + *one;
+    if (const auto* several = boost::any_cast<Words>(&value.value()))
+      for (const std::string& word : *several) text += " " + word;
+    text += "\n";
+  }
+  std::vector<std::string> inputs;
+  std::error_code code;
+  for (const std::filesystem::path& file : files_read())
+    if (!std::filesystem::equivalent(file, log, code)) inputs.push_back(sha256_hex(read_file(file)));
+  std::sort(inputs.begin(), inputs.end());
+  for (const std::string& input : inputs) text += input + "\n";
+  return sha256_hex(text);
+}
+
+std::optional<TaskEngine::Shard> shard_of(const po::variables_map& values) {
+  if (values.count("shard") == 0) return std::nullopt;
+  const std::string text = text_of(values, "shard");
+  TaskEngine::Shard shard;
+  const char* const end = text.data() + text.size();
+  const auto [slash, first] = std::from_chars(text.data(), end, shard.part);
+  const bool whole = first == std::errc() && slash != end && *slash == '/' &&
+                     std::from_chars(slash + 1, end, shard.parts).ptr == end && slash + 1 != end;
+  if (!whole || shard.part < 1 || shard.parts < shard.part || shard.parts > 1000000)
+    throw InputError({}, "--shard " + text, "i/n with 1 <= i <= n <= 1000000: 3/40");
+  if (values.count("resume") == 0) throw InputError({}, "--shard needs a log", "give --resume LOG");
+  return shard;
+}
+
+}  // namespace
+
 Watch::Watch(const CommonOptions& common, double seconds, TaskEngine* engine)
     : begin_(Monitor::Clock::now()), last_(begin_), stage_begin_(begin_) {
   begin_stage(SignalStage::searching);
@@ -52,8 +101,12 @@ void Watch::show(const Progress& progress) {
 }
 
 void after_tasks(TaskEngine& engine, const CommonOptions& common) {
-  tell_of_tasks(engine, common);
   if (!engine.writes()) throw AnotherWrites{};
+  if (!common.verbose) return;
+  const Workers::Traffic traffic = engine.workers().traffic();
+  print_aside(fmt::format("posewright: {} tasks done, {} known before; {} processes, {} messages, {} bytes\n",
+                          engine.computed(), engine.known(), engine.workers().processes(), traffic.messages,
+                          traffic.bytes));
 }
 
 void print_notes(const std::vector<std::string>& notes) {
@@ -65,6 +118,31 @@ double time_limit(const po::variables_map& values) {
   const double seconds = number_of({"--time-limit", {text_of(values, "time-limit")}}, 0, 1e9);
   if (seconds > 0) return seconds;
   throw InputError({}, "--time-limit 0", "a number of seconds above 0 is allowed");
+}
+
+po::options_description resume_option() {
+  po::options_description options("Large computations");
+  options.add_options()("resume", text("LOG"), "record finished tasks in LOG, and skip those already recorded there");
+  return options;
+}
+
+po::options_description task_options() {
+  po::options_description options = resume_option();
+  options.add_options()("shard", text("i/n"),
+                        "compute only the i-th of n shares of the tasks; posewright merge joins the logs");
+  return options;
+}
+
+std::unique_ptr<TaskEngine> engine_of(const po::variables_map& values, const std::string& command) {
+  const std::shared_ptr<Workers> workers = started_workers();
+  const std::optional<TaskEngine::Shard> shard = shard_of(values);
+  if (workers->processes() > 1 && values.count("time-limit") > 0)
+    throw InputError({}, "--time-limit with several processes",
+                     "processes would stop at different tasks; start one process");
+  std::unique_ptr<TaskLog> log;
+  if (const std::string file = text_of(values, "resume"); !file.empty() && workers->rank() == 0)
+    log = std::make_unique<TaskLog>(file, [=] { return computation(values, command, file); });
+  return std::make_unique<TaskEngine>(workers, std::move(log), shard);
 }
 
 }  // namespace posewright::cli

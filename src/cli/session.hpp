@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -8,6 +9,7 @@
 #include "command.hpp"
 #include "posewright/support/monitor.hpp"
 #include "posewright/support/result_store.hpp"
+#include "posewright/support/tasks.hpp"
 
 namespace posewright::cli {
 
@@ -47,7 +49,7 @@ struct Interrupted {};
 /// Ends a process that is not the one that writes.
 struct AnotherWrites {};
 
-/// Output of --verbose about tasks; throws AnotherWrites.
+/// Output of --verbose about tasks: number of known ones, and traffic between processes; throws AnotherWrites.
 void after_tasks(TaskEngine& engine, const CommonOptions& common);
 
 /// Runs work(monitor) under a Watch. Throws Interrupted where the work gave up because of Ctrl-C, AnotherWrites on all
@@ -72,5 +74,15 @@ void print_notes(const std::vector<std::string>& notes);
 
 /// Seconds of --time-limit; 0 if it is not given.
 double time_limit(const po::variables_map& values);
+
+/// --resume LOG, of commands whose tasks follow one from another.
+po::options_description resume_option();
+/// --resume LOG and --shard i/n, of commands whose work splits into tasks.
+po::options_description task_options();
+
+/// Engine of a command's tasks: the processes that the program was started as, with the log and the share that the
+/// options name. Throws InputError for a share that is none or without a log, and for --time-limit with several
+/// processes: they would stop at different places.
+std::unique_ptr<TaskEngine> engine_of(const po::variables_map& values, const std::string& command);
 
 }  // namespace posewright::cli

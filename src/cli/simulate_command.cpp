@@ -10,7 +10,6 @@
 #include "posewright/tasks/simulate_problem.hpp"
 #include "problem_source.hpp"
 #include "session.hpp"
-#include "task_options.hpp"
 #include "terminal.hpp"
 #include "write_result.hpp"
 

@@ -8,7 +8,6 @@
 #include "posewright/tasks/place_stations.hpp"
 #include "problem_source.hpp"
 #include "session.hpp"
-#include "task_options.hpp"
 #include "terminal.hpp"
 
 namespace posewright::cli {

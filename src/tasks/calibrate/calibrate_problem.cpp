@@ -18,7 +18,6 @@
 #include "posewright/calibration/frame_shift.hpp"
 #include "posewright/calibration/instrument_noise.hpp"
 #include "posewright/calibration/placing_columns.hpp"
-#include "posewright/lists/platform_images.hpp"
 #include "posewright/model/campaigns.hpp"
 #include "posewright/model/elastic_chain.hpp"
 #include "posewright/model/instrument_choice.hpp"

@@ -161,20 +161,17 @@ Json compensation_json(const Problem& problem, const Compensation& c) {
       json["units"].push_back(coordinate.unit);
     }
   json["error"] = {{"before", error_summary_json(c.before)}, {"after", error_summary_json(c.after)}};
-  json["changes"] = Json::array();
-  for (const AxisChange& axis : c.axes)
-    json["changes"].push_back({{"name", axis.name}, {"unit", axis.unit}, {"rms", axis.rms}, {"largest", axis.largest}});
-  json["not_compensated"] = Json::array();
-  for (const NotCompensated& n : c.failures)
-    json["not_compensated"].push_back(
-        {{"file", n.file}, {"line", n.line > 0 ? Json(n.line) : Json(nullptr)}, {"id", n.id}, {"why", n.why}});
-  json["lists"] = Json::array();
-  for (const CompensatedList& list : c.lists) json["lists"].push_back(commanded_list_json(list, c));
-  json["programs"] = Json::array();
-  for (const ProgramAccount& program : c.programs) json["programs"].push_back(account_json(program));
-  json["lines"] = Json::array();
-  for (const LineDeviation& line : c.lines)
-    json["lines"].push_back({{"file", line.file}, {"line", line.line}, {"largest", finite_or_null(line.largest)}});
+  json["changes"] = list_json(c.axes, [](const AxisChange& axis) {
+    return Json{{"name", axis.name}, {"unit", axis.unit}, {"rms", axis.rms}, {"largest", axis.largest}};
+  });
+  json["not_compensated"] = list_json(c.failures, [](const NotCompensated& n) {
+    return Json{{"file", n.file}, {"line", n.line > 0 ? Json(n.line) : Json(nullptr)}, {"id", n.id}, {"why", n.why}};
+  });
+  json["lists"] = list_json(c.lists, [&](const CompensatedList& list) { return commanded_list_json(list, c); });
+  json["programs"] = list_json(c.programs, account_json);
+  json["lines"] = list_json(c.lines, [](const LineDeviation& line) {
+    return Json{{"file", line.file}, {"line", line.line}, {"largest", finite_or_null(line.largest)}};
+  });
   json["notes"] = c.notes;
   return json;
 }

@@ -65,9 +65,7 @@ std::string add_text(const ListChange& change) {
 }
 
 Json change_json(const ListChange& change) {
-  Json json = {{"efficiency", change.efficiency},
-               {"log_det", change.log_det},
-               {"rho0", change.rho0 ? Json(*change.rho0) : Json(nullptr)}};
+  Json json = {{"efficiency", change.efficiency}, {"log_det", change.log_det}, {"rho0", value_or_null(change.rho0)}};
   if (!change.poses.empty()) json["poses"] = change.poses;
   if (change.added.empty()) return json;
   json["poses"] = Json::array();
@@ -95,11 +93,9 @@ std::string evaluation_text(const PoseListEvaluation& e) {
 Json evaluation_json(const PoseListEvaluation& e) {
   Json json = parse_ordered_json(plan_json(e.plan));
   json["schema"] = "posewright/evaluation/1";
-  json["scores"] = Json::array();
-  for (const CriterionScore& score : e.scores)
-    json["scores"].push_back({{"criterion", score.name},
-                              {"value", score.value},
-                              {"efficiency", score.efficiency ? Json(*score.efficiency) : Json(nullptr)}});
+  json["scores"] = list_json(e.scores, [](const CriterionScore& score) {
+    return Json{{"criterion", score.name}, {"value", score.value}, {"efficiency", value_or_null(score.efficiency)}};
+  });
   json["drop"] = e.drop ? change_json(*e.drop) : Json(nullptr);
   json["add"] = e.add ? change_json(*e.add) : Json(nullptr);
   return json;

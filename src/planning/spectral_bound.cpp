@@ -34,13 +34,9 @@ class EigenvalueBound {
     known_ = options.prior.size() > 0 ? options.prior : Eigen::MatrixXd::Zero(m, m);
   }
 
-  /// Bound of the eigenvalues, not of their roots; `attained` is the value of fractional numbers.
-  struct Result {
-    double bound = std::numeric_limits<double>::infinity(), attained = 0.0;
-  };
-  std::optional<Result> run(const Monitor& monitor) {
+  std::optional<EigenvalueBounds::Bound> run(const Monitor& monitor) {
     if (!first_working_set()) return std::nullopt;
-    Result result;
+    EigenvalueBounds::Bound result{std::numeric_limits<double>::infinity(), 0.0};
     for (int round = 0; round < most_spectral_rounds; ++round) {
       EigenvalueRelaxation relaxation = relaxed();
       if (!relaxation.regular()) return std::nullopt;
@@ -195,7 +191,8 @@ class EigenvalueBound {
 }  // namespace
 
 std::optional<SpectralBound> spectral_bound(const BlockArray& blocks, const InformationFunction& function,
-                                            const SpectralBoundOptions& options, const Monitor& monitor) {
+                                            const SpectralBoundOptions& options, const Monitor& monitor,
+                                            EigenvalueBounds* known) {
   const auto* spectral = dynamic_cast<const SpectralFunction*>(&function);
   if (spectral == nullptr || spectral->index() == SpectralIndex::o5) return std::nullopt;
   const bool least = spectral->index() != SpectralIndex::o2;
@@ -205,8 +202,11 @@ std::optional<SpectralBound> spectral_bound(const BlockArray& blocks, const Info
   SpectralBound result;
   for (const bool of_ratio : {false, true}) {
     if (!(of_ratio ? ratio : least)) continue;
-    const auto found = EigenvalueBound(blocks, *spectral, options, of_ratio).run(monitor);
+    std::optional<EigenvalueBounds::Bound> found;
+    if (known != nullptr) found = of_ratio ? known->ratio : known->least;
+    if (!found) found = EigenvalueBound(blocks, *spectral, options, of_ratio).run(monitor);
     if (!found) return std::nullopt;
+    if (known != nullptr) (of_ratio ? known->ratio : known->least) = found;
     result.bound += 0.5 * std::log(found->bound);
     result.gap += 0.5 * std::log(found->bound / found->attained);
   }

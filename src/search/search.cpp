@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <stdexcept>
 
+#include "joined.hpp"
 #include "planners/planner_registry.hpp"
 #include "posewright/criterion/determinant.hpp"
 #include "posewright/criterion/registry.hpp"
@@ -26,70 +29,9 @@ namespace {
 
 // Efficiencies of o2 and o4 are ratios of squares, as those of o3 and o5 are.
 constexpr double spectral_degree = 0.5;
-
-/// All parts as one problem: whitened blocks, columns side by side, rows below each other.
-struct Joined {
-  BlockArray blocks;
-  Eigen::MatrixXd R, prior;  // prior in whitened coordinates; empty: none
-  int nuisance = 0;
-  CriterionData data;
-  std::vector<double> offsets;  // log det raw − whitened, of each part
-  std::vector<double> references;
-};
-
-ApproximateDesignOptions bound_options(const SearchRequest& request, const Eigen::MatrixXd& prior) {
-  ApproximateDesignOptions options;
-  options.cap = std::min(1.0, double(request.repeats.most) / request.poses);
-  options.tolerance = request.bound_tolerance;
-  if (prior.size() > 0) options.prior = prior / double(request.poses);
-  options.threads = request.planner.threads;
-  return options;
-}
-
-/// Bound for this part alone: the reference of its efficiency.
-double reference_of(const SearchPart& part, const Eigen::MatrixXd& prior, const SearchRequest& request,
-                    const Monitor& monitor) {
-  return solve_approximate_design(part.blocks, LogDetFunction(part.nuisance, part.blocks.columns()),
-                                  bound_options(request, prior), monitor)
-      .bound_for(request.poses);
-}
-
-Joined join(std::vector<SearchPart> parts, const SearchRequest& request, bool several, const Monitor& monitor) {
-  Joined joined;
-  Eigen::Index m = 0;
-  for (const SearchPart& part : parts) m += part.blocks.columns();
-  joined.R = Eigen::MatrixXd::Zero(m, m);
-  Eigen::MatrixXd prior = Eigen::MatrixXd::Zero(m, m);
-  joined.data.scale.resize(m);
-  Eigen::Index first = 0;
-  for (SearchPart& part : parts) {
-    const Eigen::Index c = part.blocks.columns();
-    const Eigen::MatrixXd per_pose =
-        part.prior.size() > 0 ? Eigen::MatrixXd(part.prior / double(request.poses)) : Eigen::MatrixXd();
-    const Whitening whitening = whiten(part.blocks, per_pose);
-    joined.R.block(first, first, c, c) = whitening.R;
-    joined.offsets.push_back(whitening.log_det_offset(part.nuisance));
-    Eigen::MatrixXd own;
-    if (part.prior.size() > 0) own = whitening.prior * double(request.poses);
-    if (own.size() > 0) prior.block(first, first, c, c) = own;
-    joined.data.scale.segment(first, c) = part.scale;
-    if (several) {
-      const std::size_t v = joined.references.size();
-      const double reference = request.references.empty() ? reference_of(part, own, request, monitor)
-                                                          : request.references[v] - joined.offsets.back();
-      joined.references.push_back(reference + joined.offsets.back());
-      joined.data.variants.push_back({int(first), int(c), part.nuisance, part.weight, reference});
-    }
-    first += c;
-  }
-  if (parts.front().prior.size() > 0) joined.prior = prior;
-  joined.data.R = joined.R;
-  joined.data.test_points = parts.front().test_points;
-  joined.data.effects = parts.front().effects;
-  if (!several) joined.nuisance = joined.data.nuisance = parts.front().nuisance;
-  joined.blocks = parts.size() == 1 ? std::move(parts.front().blocks) : side_by_side(parts);
-  return joined;
-}
+// So few poses are as good from rough weights over the workspace as from settled ones; three are 0.01 worse in log det.
+// Only where local searches have no gradients, so that settling takes long.
+constexpr int few_poses = 2;
 
 void require_choice(const SearchRequest& request, std::size_t candidates) {
   if (double(request.poses) <= double(candidates) * request.repeats.most) return;
@@ -157,13 +99,13 @@ void fill(Certificate& certificate, const ApproximateDesign& approximate, const 
 /// o2 and o4 have a bound of their own; that of o3 is tighter than what its weights alone say.
 std::optional<SpectralBound> spectral_bound_of(const BlockArray& blocks, const Joined& joined,
                                                const InformationFunction& function, const SearchRequest& request,
-                                               const Monitor& monitor) {
+                                               const Monitor& monitor, EigenvalueBounds* known = nullptr) {
   SpectralBoundOptions options;
   options.poses = request.poses;
   options.repeats = std::min(request.repeats.most, request.poses);
   options.prior = joined.prior;
   options.threads = request.planner.threads;
-  return spectral_bound(blocks, function, options, monitor);
+  return spectral_bound(blocks, function, options, monitor, known);
 }
 
 /// Takes the bound where it is the lower one, or the only one.
@@ -204,6 +146,12 @@ std::shared_ptr<const DesignMeasure> measure(const Joined& joined, const Criteri
   return std::make_shared<DesignMeasure>(std::move(criterion), joined.R, joined.prior, offset_of(joined, entry));
 }
 
+/// What solutions of bounds leave for further ones of the same candidates.
+struct SolvedBounds {
+  std::vector<int> support{};  // of the weights, ascending; empty: none yet
+  EigenvalueBounds eigenvalues{};
+};
+
 template <class Registry>
 std::vector<std::string> names_in(const Registry& registry) {
   std::vector<std::string> names;
@@ -233,16 +181,18 @@ std::shared_ptr<const DesignMeasure> measure_of(std::vector<SearchPart> parts, c
   return measure(joined, entry, entry.make(joined.data));
 }
 
-Bound bound_only(std::vector<SearchPart> parts, const SearchRequest& request, const Monitor& monitor) {
-  const CriterionEntry& entry = *find_criterion(request.criterion);
-  require_choice(request, parts.front().blocks.count());
-  const Joined joined = join(std::move(parts), request, entry.several_variants, monitor);
+namespace {
+
+/// @param solved  what solutions before have found of the same candidates
+Bound bound_of(const Joined& joined, const CriterionEntry& entry, const SearchRequest& request, const Monitor& monitor,
+               SolvedBounds& solved) {
   const std::shared_ptr<const Criterion> criterion = entry.make(joined.data);
   Bound result;
   result.measure = measure(joined, entry, criterion);
   result.degree = criterion->function().degree();
   result.references = joined.references;
-  const auto spectral = spectral_bound_of(joined.blocks, joined, criterion->function(), request, monitor);
+  const auto spectral =
+      spectral_bound_of(joined.blocks, joined, criterion->function(), request, monitor, &solved.eigenvalues);
   result.certificate.proved = result.degree > 0 || spectral;
   if (!result.certificate.proved) return result;
   if (result.degree == 0) {
@@ -251,8 +201,11 @@ Bound bound_only(std::vector<SearchPart> parts, const SearchRequest& request, co
     tighten(result.certificate, spectral, true);
     return result;
   }
+  ApproximateDesignOptions options = bound_options(request, joined.prior);
+  options.start = solved.support;
   const ApproximateDesign approximate =
-      solve_approximate_design(joined.blocks, criterion->function(), bound_options(request, joined.prior), monitor);
+      solve_approximate_design(joined.blocks, criterion->function(), options, monitor);
+  solved.support = approximate.support;
   fill(result.certificate, approximate, joined, request, offset_of(joined, entry));
   if (has_limits(request))
     limit(result.certificate, joined.blocks, *request.spacing, joined, criterion->function(), approximate, request,
@@ -261,6 +214,40 @@ Bound bound_only(std::vector<SearchPart> parts, const SearchRequest& request, co
   result.sensitivity = approximate.sensitivity;
   result.price = approximate.price;
   return result;
+}
+
+}  // namespace
+
+Bound bound_only(std::vector<SearchPart> parts, const SearchRequest& request, const Monitor& monitor) {
+  return CandidateBounds(std::move(parts), request).of(request.criterion, monitor);
+}
+
+struct CandidateBounds::State {
+  std::vector<SearchPart> parts;  // until they are joined
+  SearchRequest request;
+  std::optional<Joined> joined;
+  bool several = false;
+  SolvedBounds solved;
+};
+
+CandidateBounds::CandidateBounds(std::vector<SearchPart> parts, const SearchRequest& request)
+    : state_(new State{std::move(parts), request, {}, false, {}}) {
+  require_choice(request, state_->parts.front().blocks.count());
+}
+
+CandidateBounds::~CandidateBounds() = default;
+CandidateBounds::CandidateBounds(CandidateBounds&&) noexcept = default;
+
+Bound CandidateBounds::of(const std::string& criterion, const Monitor& monitor) {
+  State& state = *state_;
+  const CriterionEntry& entry = *find_criterion(criterion);
+  if (!state.joined) {
+    state.several = entry.several_variants;
+    state.joined = join(std::move(state.parts), state.request, state.several, monitor);
+  }
+  if (entry.several_variants != state.several)
+    throw std::invalid_argument("bounds of one variant and of several have different coordinates");
+  return bound_of(*state.joined, entry, state.request, monitor, state.solved);
 }
 
 namespace {
@@ -334,6 +321,7 @@ SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request,
   std::optional<WorkspaceBound> workspace;
   WorkspaceBoundOptions options;
   if (space != nullptr && degree > 0 && request.certify && !monitor.should_stop()) {
+    options.starts_alone = !request.certificate && request.poses <= few_poses && !space->margins();
     options.prior = bound_options(request, joined.prior).prior;
     options.seed = request.planner.seed;
     options.proof = request.proof;
@@ -374,10 +362,14 @@ SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request,
   };
   result.design = make_planner(request.method)->plan(task, request.planner, shifted);
   result.stopped = approximate.stopped || result.design.stopped;
+  result.references = joined.references;
+  if (!request.certificate) {
+    result.certificate.proved = false;
+    return result;
+  }
   // Last, so that whoever stops it has his plan.
   if (workspace && request.prove)
     settle_workspace(*workspace, joined.blocks, approximate, function, *space, options, monitor);
-  result.references = joined.references;
   // Only where the certificate counts them (below): a plan that takes others is not judged by it.
   if (workspace && share > 0 && !result.design.added.empty()) result.support = workspace->support;
   result.certificate.proved = share > 0;

@@ -10,6 +10,7 @@
 
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/results/plan.hpp"
+#include "posewright/study/study.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/tasks/evaluate_problem.hpp"
 #include "posewright/tasks/plan_problem.hpp"
@@ -395,6 +396,29 @@ TEST(Evaluate, APlanReadBackIsWorthWhatThePlanSaid) {
       left.erase(left.begin());
       EXPECT_LE(recomputed_log_det(problem, "", left), e.drop->log_det + 1e-9);
     }
+  }
+}
+
+TEST(Evaluate, APoseToAddIsWorthMoreThanAnyThatIsDrawn) {
+  const TemporaryFolder folder;
+  const Problem problem = example("kr270/problem.yaml");
+  DesignEdits edits = quick(200);
+  const Plan plan = planned(problem, edits);
+  const auto file = folder.write("p.csv", poses_csv(plan));
+  edits.edit("method", "auto");
+  EvaluateOptions options;
+  options.add = 1;
+  const PoseListEvaluation e = evaluate_problem(edits.of(problem), poses_in(problem, file), options, Monitor{});
+  ASSERT_TRUE(e.add);
+  edits.edit("candidates", 300);
+  edits.seed = 7;
+  const Problem drawn = edits.of(problem);
+  const Study study = make_study(resolve(drawn, edits, Monitor{}), Monitor{});
+  for (std::size_t i = 0; i < study.configurations.count(); ++i) {
+    std::vector<std::vector<double>> longer = configurations_of(problem, plan);
+    const auto q = study.configurations[i];
+    longer.emplace_back(q.begin(), q.end());
+    EXPECT_LT(recomputed_log_det(problem, "", longer), e.add->log_det) << i;
   }
 }
 

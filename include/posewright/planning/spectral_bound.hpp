@@ -24,6 +24,16 @@ struct SpectralBoundOptions {
   int threads = 1;          ///< 0 = all
 };
 
+/// Bounds of eigenvalues that two criteria share: o4 has that of o3 and that of o2. Of the same blocks, scale, nuisance
+/// columns and options.
+struct EigenvalueBounds {
+  struct Bound {
+    double bound = 0.0;     ///< of λ_min or of λ_min/λ_max
+    double attained = 0.0;  ///< by numbers of poses that need not be whole
+  };
+  std::optional<Bound> least{}, ratio{};  ///< none: not known yet
+};
+
 /// Bounds of o2, o3 and o4 (theory.md eq. (44), (45)). For any E, F ⪰ 0 of trace 1 and any N poses of information M,
 ///   λ_min(M) ≤ tr(E M) ≤ tr(E M0) + Σ of the N largest tr(J_i E J_iᵀ),
 ///   λ_min(M)/λ_max(M) ≤ t  if  tr(M0 (E − tF)) + Σ of the N largest tr(J_i (E − tF) J_iᵀ) ≤ 0;
@@ -31,7 +41,9 @@ struct SpectralBoundOptions {
 /// all candidates is the proof, whatever the method did.
 /// None for another Φ, and none for o2 with nuisance columns: λ_max of a Schur complement is no longer linear from
 /// below in M (o4 is bounded by o3 then, o2 ≤ 1). A stop gives the bound so far, none before the first.
+/// @param known  takes what is computed, and saves what it has; null: nothing is known
 std::optional<SpectralBound> spectral_bound(const BlockArray& blocks, const InformationFunction& function,
-                                            const SpectralBoundOptions& options, const Monitor& monitor);
+                                            const SpectralBoundOptions& options, const Monitor& monitor,
+                                            EigenvalueBounds* known = nullptr);
 
 }  // namespace posewright

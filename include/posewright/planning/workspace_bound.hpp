@@ -40,6 +40,8 @@ struct WorkspaceBoundOptions {
   using FurtherStarts =
       std::function<std::vector<std::vector<double>>(const Eigen::MatrixXd& T, double limit, const Monitor& monitor)>;
   FurtherStarts further_starts{};
+  /// No bound, but configurations that weights would use: a search for plans between the candidates begins with them.
+  bool starts_alone = false;
   std::uint64_t seed = 0;
   int threads = 0;
 };

@@ -23,7 +23,8 @@ class DesignMeasure {
   double phi(const BlockArray& blocks) const;
   /// Overload for blocks of several parts.
   double phi(const std::vector<SearchPart>& parts) const;
-  /// Φ of the poses without each of the known ones, whose information the prior holds.
+  /// Φ of the poses without each of some: of the known ones, whose information the prior holds, or of the poses
+  /// themselves.
   std::vector<double> phi_without(const std::vector<SearchPart>& poses, const std::vector<SearchPart>& known) const;
   /// Shares of groups of poses in the information: tr(M_g S)/tr(M S), S = ∂Φ/∂M at M of all; the last is the prior's.
   /// They add to one.

@@ -35,6 +35,9 @@ struct SearchRequest {
   bool reserve = false;
   PlannerOptions planner;
   bool certify = true;  ///< false: no bound is sought, which takes longer than the search for a few poses
+  /// False: nobody asks for a certificate. Bounds are computed as far as they serve the search; the result has the
+  /// design alone.
+  bool certificate = true;
   /// Relative tolerance of the bound. Every value gives a valid bound, small ones a tight one.
   double bound_tolerance = ApproximateDesignOptions{}.tolerance;
   bool prove = false;  ///< the certificate over the workspace, after the search and where it can be proved
@@ -81,6 +84,23 @@ struct Bound {
   double price = 0.0;                 ///< candidates with a sensitivity well below it are in no good plan
 };
 Bound bound_only(std::vector<SearchPart> parts, const SearchRequest& request, const Monitor& monitor);
+
+/// Bounds over the same candidates by one criterion after the other. Candidates are whitened once, a solution begins
+/// where the one before had its weights, and what two criteria share is solved once. Each bound is that of bound_only,
+/// up to the tolerance of its solution.
+class CandidateBounds {
+ public:
+  /// @param parts    that do for all criteria that are asked for
+  /// @param request  its criterion does not count; its spacing outlives this
+  CandidateBounds(std::vector<SearchPart> parts, const SearchRequest& request);
+  ~CandidateBounds();
+  CandidateBounds(CandidateBounds&&) noexcept;
+  Bound of(const std::string& criterion, const Monitor& monitor);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 /// The measure of a list by itself, without candidates: the list's own blocks give the coordinates.
 std::shared_ptr<const DesignMeasure> measure_of(std::vector<SearchPart> parts, const SearchRequest& request,

@@ -91,7 +91,7 @@ def rows(program, folder):
         "parameters alone, select of 5,000 × m, 600 poses": ((30, 100, 300), lambda m: select(5000, m, 600, "--restarts", "1")),
         "poses, select of 5,000 × 10": ((100, 300, 1000), lambda poses: select(5000, 10, poses)),
         "poses, report of the KR 270": ((30, 100, 300, 1000), lambda poses: [
-            "report", pairs.planned(program, folder, kr270, poses) + ".json", "-o", "out.html", "--force", "--quiet"]),
+            "report", pairs.planned(program, folder, kr270, poses, restarts=10) + ".json", "-o", "out.html", "--force", "--quiet"]),
         "measured poses, calibrate": ((300, 1000, 5000), lambda poses: calibrate("geometric", poses)),
         "measured poses, calibrate with an unmodelled effect": ((300, 1000, 5000), lambda poses: calibrate("lacking", poses)),
         "joints, plan": ((4, 7, 14), lambda joints: plan(joints_arm(folder, joints))),

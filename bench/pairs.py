@@ -89,11 +89,11 @@ def measured(program, folder, poses):
     return name
 
 
-def planned(program, folder, problem, poses, *options):
-    """A plan to go on with, found in little time."""
-    name = f"{pathlib.Path(problem).parent.name}-{pathlib.Path(problem).stem}-{poses}"
+def planned(program, folder, problem, poses, *options, restarts=1):
+    """A plan to go on with, found in little time. With ten restarts it states what other numbers of poses reach."""
+    name = f"{pathlib.Path(problem).parent.name}-{pathlib.Path(problem).stem}-{poses}-{restarts}"
     if not (folder / f"{name}.json").exists():
-        run(program, ["plan", problem, "--poses", str(poses), "--restarts", "1", "--method", "exchange", "--proof-time", "0", *options,
+        run(program, ["plan", problem, "--poses", str(poses), "--restarts", str(restarts), "--method", "exchange", "--proof-time", "0", *options,
                       "-o", f"{name}.json", "--poses-csv", f"{name}.csv", "--force", "--quiet"], folder)
     return name
 
@@ -116,7 +116,7 @@ def rows(program, folder, robots):
     cell, kr270 = "examples/cell/problem.yaml", "examples/kr270/problem.yaml"
 
     def report(problem, poses):
-        return ["report", planned(program, folder, problem, poses) + ".json", "-o", "out.html", "--force", "--quiet"], page_bytes
+        return ["report", planned(program, folder, problem, poses, restarts=10) + ".json", "-o", "out.html", "--force", "--quiet"], page_bytes
 
     def calibrate(poses, variant):
         return ["calibrate", "examples/kr270/unmodelled.yaml", measured(program, folder, poses), "--variant", variant, "--json", "-o", "-"], new_poses
@@ -128,7 +128,9 @@ def rows(program, folder, robots):
         "help": lambda: (["--help"], nothing),
         "report kr270, 30 poses": lambda: report(kr270, 30),
         "report kr270, 300 poses": lambda: report(kr270, 300),
+        "report kr270, 1,000 poses": lambda: report(kr270, 1000),
         "report cell, 30 poses": lambda: report(cell, 30),
+        "report cell, 300 poses": lambda: report(cell, 300),
         "evaluate --drop 2 --add 2, cell, 30 poses": lambda: (
             ["evaluate", cell, planned(program, folder, cell, 30) + ".csv", "--drop", "2", "--add", "2", "--json", "--quiet"], changes),
         "plan kr270": lambda: (["plan", kr270, *PLAN], log_det),

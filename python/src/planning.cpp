@@ -18,6 +18,7 @@ py::object plan(const GivenProblem& given, const py::object& poses, const py::kw
   keywords.read(plan_options(), call);
   const std::optional<double> limit = keywords.time_limit();
   const auto problem = keywords.designed(given, {}, call.run);
+  call.run.other_numbers = true;
   const auto search = [&](const auto& work) {
     return watched(given, limit, keywords.progress, OnInterrupt::keep_best, work);
   };

@@ -1,3 +1,4 @@
+import { matricesOf } from './numerics/information.js';
 import { PlanFigures } from './numerics/plan_figures.js';
 
 /**
@@ -9,7 +10,7 @@ export class PoseList extends EventTarget {
   constructor(report) {
     super();
     this.report = report;
-    this.engine = new PlanFigures(report.columns, report.information);
+    this.engine = new PlanFigures(report.columns, matricesOf(report.information, report.columns.length));
     /** Poses measured before count whatever the reader ticks. */
     this.measured = report.plan.poses.filter((p) => p.measured).map((p) => p.id);
     this.planned = this.engine.of(this.engine.blocks.keys());

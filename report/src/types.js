@@ -37,7 +37,7 @@
  * @property {string|null} reason that forbids it
  * @property {any} pose as in plan.json
  * @property {Keyframe} keyframe
- * @property {number[]} packed JᵀJ, as Information.poses
+ * @property {number[]} packed JᵀJ, columns as in Information
  * @property {([number, number]|null)[]|null} pixels as Camera.pictures
  *
  * @typedef {object} Camera
@@ -51,10 +51,18 @@
  * @property {Point[]} points board frame
  * @property {{pose: number, pixels: ([number, number]|null)[]}[]} pictures
  *
- * @typedef {object} Information
- * @property {{id: number, packed: number[]}[]} poses
- * @property {number[]|null} prior
- * @property {{weight: number, packed: number[]}[]} test m²
+ * @typedef {object} Information columns in units of their tolerance, nuisance first
+ * @property {number[]} factor L, packed: L Lᵀ is the information of all poses and the prior
+ * @property {{id: number, rows: string}[]} poses W of whitened rows J = W Lᵀ: 32-bit integers in units of 2⁻³⁰, row by
+ *   row, the least significant byte first, as base64
+ * @property {number[]|null} prior packed
+ * @property {{weight: number, rows: number[][]}[]} test A of each test pose, m
+ *
+ * What figures are computed from.
+ * @typedef {object} Matrices
+ * @property {{id: number, packed: ArrayLike<number>}[]} poses JᵀJ
+ * @property {ArrayLike<number>|null} prior
+ * @property {{weight: number, packed: ArrayLike<number>}[]} test AᵀA, m²
  *
  * @typedef {object} Report
  * @property {string} version

@@ -2,7 +2,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <iostream>
@@ -14,6 +13,7 @@
 
 #include "command.hpp"
 #include "posewright/options/tables.hpp"
+#include "posewright/support/base64.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/file.hpp"
 #include "posewright/support/json.hpp"
@@ -31,20 +31,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view problem_slot = "@GIVEN_PROJECT@";
-
-/// RFC 4648.
-std::string base64(std::string_view bytes) {
-  constexpr char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve(bytes.size() / 3 * 4 + 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t word = 0;
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    for (std::size_t k = 0; k < 3; ++k) word = word << 8 | (k < count ? std::uint8_t(bytes[i + k]) : 0U);
-    for (std::size_t k = 0; k < 4; ++k) text += k <= count ? letters[word >> (18 - 6 * k) & 63] : '=';
-  }
-  return text;
-}
 
 void replace_all(std::string& text, const std::string& old, const std::string& with) {
   for (std::size_t at = text.find(old); at != std::string::npos; at = text.find(old, at + with.size()))

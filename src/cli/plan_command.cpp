@@ -24,6 +24,7 @@ int run_plan(const po::variables_map& values, const Words& positional) {
   const CommonOptions common = common_values(values);
   PlanCall call;
   read_options(plan_options(), values, call);
+  call.run.other_numbers = true;
   const Problem problem = designed_problem(single(positional, "PROBLEM"), values, plan_keys());
   const auto engine = engine_of(values, "plan");
   const Outputs outputs(values, files_of(problem), true, call.validation.has_value());

@@ -240,7 +240,8 @@ const OptionTable<ReportOptions>& report_options() {
            OptionKind::file);
     t.of_program("problem", "FILE", "problem file (the one named by the plan)");
     t.row({"brief", "",
-           "leave out the slow parts: other numbers of poses, gain of candidates; of a problem: ways from home",
+           "leave out the slow parts: gain of candidates, other numbers of poses that the plan does not state; of a "
+           "problem: ways from home",
            OptionKind::flag},
           [](R& o, const GivenOption&) { o.sizes = o.candidates = false; });
     t.of_program("judge", "POSES", "plan: print whether each pose of this list is feasible; writes no page");

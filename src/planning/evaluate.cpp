@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
@@ -19,6 +20,33 @@ void require_full_rank(const Eigen::MatrixXd& r, const std::vector<Parameter>& p
                      parameters[std::size_t(j)].name + " from the others");
 }
 
+Eigen::VectorXd tolerances_of(const std::vector<Parameter>& parameters) {
+  Eigen::VectorXd tolerance(Eigen::Index(parameters.size()));
+  for (Eigen::Index j = 0; j < tolerance.size(); ++j) tolerance[j] = parameters[std::size_t(j)].tolerance;
+  return tolerance;
+}
+
+Eigen::Index nuisance_of(const std::vector<Parameter>& parameters) {
+  return std::count_if(parameters.begin(), parameters.end(),
+                       [](const Parameter& p) { return p.role == Role::nuisance; });
+}
+
+/// Fills log det, σ and covariance.
+/// @param r  upper triangular, m × m: of the rows with columns in units of their tolerance
+/// @return r⁻¹
+Eigen::MatrixXd fill_by_triangle(Evaluation& result, const Eigen::MatrixXd& r, const std::vector<Parameter>& parameters,
+                                 const Eigen::VectorXd& tolerance) {
+  require_full_rank(r, parameters);
+  const Eigen::Index m = r.cols();
+  const Eigen::ArrayXd pivots = (r.diagonal().array().abs() / tolerance.array()).log();
+  result.log_det_full = 2 * pivots.sum();
+  result.log_det = 2 * pivots.tail(m - nuisance_of(parameters)).sum();
+  Eigen::MatrixXd inverse = r.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(m, m));
+  result.sigma = tolerance.array() * inverse.rowwise().norm().array();
+  result.covariance = tolerance.asDiagonal() * inverse * inverse.transpose() * tolerance.asDiagonal();
+  return inverse;
+}
+
 }  // namespace
 
 Evaluation evaluate(const BlockArray& chosen, const std::vector<Parameter>& parameters, Prior prior,
@@ -32,10 +60,8 @@ Evaluation evaluate(const BlockArray& chosen, const std::vector<Parameter>& para
   if (g.rows() < m)
     throw CannotDo(std::to_string(chosen.count()) + " poses give " + std::to_string(g.rows()) + " equations for " +
                    std::to_string(m) + " parameters");
-  const auto nuisance =
-      std::count_if(parameters.begin(), parameters.end(), [](const Parameter& p) { return p.role == Role::nuisance; });
-  Eigen::VectorXd tolerance(m);
-  for (Eigen::Index j = 0; j < m; ++j) tolerance[j] = parameters[std::size_t(j)].tolerance;
+  const Eigen::Index nuisance = nuisance_of(parameters);
+  const Eigen::VectorXd tolerance = tolerances_of(parameters);
 
   Eigen::Index row = measured;
   for (Eigen::Index j = 0; j < m; ++j)
@@ -44,15 +70,8 @@ Evaluation evaluate(const BlockArray& chosen, const std::vector<Parameter>& para
   // Columns in units of their tolerance, so that pivots can be compared across m and rad.
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(g * tolerance.asDiagonal());
   const Eigen::MatrixXd r = qr.matrixQR().topRows(m).triangularView<Eigen::Upper>();
-  require_full_rank(r, parameters);
-
   Evaluation result;
-  const Eigen::ArrayXd pivots = (r.diagonal().array().abs() / tolerance.array()).log();
-  result.log_det_full = 2 * pivots.sum();
-  result.log_det = 2 * pivots.tail(m - nuisance).sum();
-  const Eigen::MatrixXd inverse = r.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(m, m));
-  result.sigma = tolerance.array() * inverse.rowwise().norm().array();
-  result.covariance = tolerance.asDiagonal() * inverse * inverse.transpose() * tolerance.asDiagonal();
+  const Eigen::MatrixXd inverse = fill_by_triangle(result, r, parameters, tolerance);
   Eigen::MatrixXd scaled = r.bottomRightCorner(m - nuisance, m - nuisance);
   if (scale.size() > 0) scaled *= scale.cwiseQuotient(tolerance).tail(m - nuisance).asDiagonal();
   result.singular_values = Eigen::JacobiSVD<Eigen::MatrixXd>(scaled).singularValues();
@@ -63,6 +82,27 @@ Evaluation evaluate(const BlockArray& chosen, const std::vector<Parameter>& para
   result.contribution.resize(Eigen::Index(chosen.count()));
   for (Eigen::Index i = 0; i < result.contribution.size(); ++i)
     result.contribution[i] = q.middleRows(i * chosen.rows(), chosen.rows()).squaredNorm() / double(m);
+  return result;
+}
+
+GrowingEvaluation::GrowingEvaluation(std::vector<Parameter> parameters, Prior prior)
+    : parameters_(std::move(parameters)), tolerance_(tolerances_of(parameters_)) {
+  R_ = Eigen::MatrixXd::Zero(tolerance_.size(), tolerance_.size());
+  for (Eigen::Index j = 0; j < tolerance_.size(); ++j)
+    if (counts(parameters_[std::size_t(j)], prior)) R_(j, j) = 1;
+}
+
+void GrowingEvaluation::add(const Eigen::Ref<const BlockArray::RowMatrix, 0, Eigen::OuterStride<>>& block) {
+  const Eigen::Index m = R_.cols();
+  Eigen::MatrixXd rows(m + block.rows(), m);
+  rows << R_, block * tolerance_.asDiagonal();
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(rows);
+  R_ = qr.matrixQR().topRows(m).triangularView<Eigen::Upper>();
+}
+
+Evaluation GrowingEvaluation::figures() const {
+  Evaluation result;
+  fill_by_triangle(result, R_, parameters_, tolerance_);
   return result;
 }
 

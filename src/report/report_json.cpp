@@ -1,9 +1,12 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "../results/sight_json.hpp"
 #include "posewright/report/judge_poses.hpp"
 #include "posewright/report/report.hpp"
+#include "posewright/support/base64.hpp"
+#include "posewright/support/dense.hpp"
 #include "posewright/support/json.hpp"
 #include "posewright/version.hpp"
 
@@ -14,6 +17,8 @@ using Json = nlohmann::ordered_json;
 
 // What is drawn needs no more than 10 µm and 10 µrad.
 constexpr double drawn_step = 1e5;
+// Integers in a unit of whitened rows.
+constexpr double row_unit = 1 << 30;
 
 double drawn(double value) {
   const double rounded = std::round(value * drawn_step) / drawn_step;
@@ -75,12 +80,42 @@ Json packed(const Eigen::MatrixXd& M) {
   return json;
 }
 
+/// W = J R⁻¹ row by row, 32-bit integers in units of 2⁻³⁰, the least significant byte first, as base64. No entry
+/// exceeds 1, since all WᵀW and the prior's part add to the identity: so an integer is finer than a 32-bit
+/// floating-point number, and log det of the poses keeps ten digits, in a third of the bytes of their decimals.
+std::string whitened_rows(const Eigen::MatrixXd& J, const Eigen::MatrixXd& R) {
+  Eigen::MatrixXd W = R.transpose().triangularView<Eigen::Lower>().solve(J.transpose()).transpose();
+  const Eigen::Index m = W.cols();
+  // More rows than columns say no more than their triangle.
+  if (W.rows() > m)
+    W = Eigen::MatrixXd(Eigen::HouseholderQR<Eigen::MatrixXd>(W).matrixQR().topRows(m).triangularView<Eigen::Upper>());
+  std::string bytes;
+  bytes.reserve(std::size_t(4 * W.size()));
+  for (Eigen::Index i = 0; i < W.rows(); ++i)
+    for (Eigen::Index j = 0; j < m; ++j) {
+      const auto value = std::uint32_t(std::int32_t(std::lround(W(i, j) * row_unit)));
+      for (int k = 0; k < 4; ++k) bytes += char(value >> (8 * k) & 0xff);
+    }
+  return base64(bytes);
+}
+
+Json rows_json(const Eigen::MatrixXd& A) {
+  Json json = Json::array();
+  for (Eigen::Index i = 0; i < A.rows(); ++i) {
+    Json row = Json::array();
+    for (Eigen::Index j = 0; j < A.cols(); ++j) row.push_back(A(i, j));
+    json.push_back(row);
+  }
+  return json;
+}
+
 Json information_json(const ReportInformation& information) {
-  Json json = {{"poses", Json::array()}};
-  for (const auto& [id, M] : information.poses) json["poses"].push_back({{"id", id}, {"packed", packed(M)}});
+  Json json = {{"factor", packed(information.triangle.transpose())}, {"poses", Json::array()}};
+  for (const auto& [id, J] : information.poses)
+    json["poses"].push_back({{"id", id}, {"rows", whitened_rows(J, information.triangle)}});
   json["prior"] = information.prior ? packed(*information.prior) : Json(nullptr);
   json["test"] = Json::array();
-  for (const auto& [weight, M] : information.test) json["test"].push_back({{"weight", weight}, {"packed", packed(M)}});
+  for (const auto& [weight, A] : information.test) json["test"].push_back({{"weight", weight}, {"rows", rows_json(A)}});
   return json;
 }
 

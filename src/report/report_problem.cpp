@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <numeric>
 #include <set>
 
 #include "posewright/lists/parameters_file.hpp"
@@ -14,39 +12,30 @@
 #include "posewright/report/report_result.hpp"
 #include "posewright/study/accuracy_points.hpp"
 #include "posewright/study/judgement.hpp"
-#include "posewright/study/pose_distance.hpp"
+#include "posewright/study/other_numbers.hpp"
 #include "posewright/study/study.hpp"
 #include "posewright/study/unmodelled.hpp"
 #include "posewright/study/written_plan.hpp"
+#include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/json.hpp"
-#include "posewright/support/parallel.hpp"
 #include "posewright/support/text_file.hpp"
 #include "report_scene.hpp"
 
 namespace posewright {
 namespace {
 
-// Other numbers of poses, as shares of the plan's own.
-constexpr double shares[] = {0.6, 0.8, 1.25, 1.6, 2.0};
-// Enough for a curve that shows what a few poses more bring: the plan's own poses, which a long search found, are among
-// those to choose from.
-constexpr int curve_restarts = 1, curve_kicks = 0;
-// Those of the largest gain are as good as all: so many for each pose of the plan.
-constexpr std::size_t promising_per_pose = 10;
 // Candidates that the page shows, and at least for each pose of the plan: a search may need ten times as many, and in a
 // cell they are most of a report's work.
 constexpr int shown_candidates = 1000, shown_per_pose = 5;
-// Of weights that are starts for a search, and of what the page shows of candidates to three digits.
-constexpr double start_tolerance = 1e-2, shown_tolerance = 1e-4;
+// Of what the page shows of candidates to three digits.
+constexpr double shown_tolerance = 1e-4;
 // Relative difference of log det that rounding of written configurations cannot make.
 constexpr double same_log_det = 1e-6;
 
-/// As the plan was made, but with short searches that stay among the candidates.
+/// As the plan was made, with no more candidates than the page shows.
 Problem reported_problem(const Problem& problem, const WrittenPlan& plan) {
   Problem searched = as_written(problem, plan);
-  set(searched, "design.method", "exchange", "report");
-  set(searched, "design.restarts", std::to_string(curve_restarts), "report");
   const int most = std::max(shown_candidates, shown_per_pose * plan.poses);
   if (searched.design.candidates.value > most) set(searched, "design.candidates", std::to_string(most), "report");
   return searched;
@@ -142,7 +131,7 @@ class ReportBuilder {
     fill_position_errors(judgement);
     if (options_.candidates || options_.sizes) find_gains();
     if (options_.candidates) fill_candidates();
-    if (options_.sizes) fill_curve();
+    if (options_.sizes || stated_curve()) fill_curve(judgement);
     return std::move(report_);
   }
 
@@ -172,6 +161,7 @@ class ReportBuilder {
       report_.notes.push_back(fmt::format(
           "The plan states log det {:.9g}, its poses give {:.9g}: files that the problem names may have changed.",
           stated, found));
+    as_planned_ = report_.notes.empty();
     if (study_.variants.size() > 1)
       report_.notes.push_back("The plan serves several variants; recomputed figures are for '" +
                               study_.first().spec->name + "'.");
@@ -196,27 +186,22 @@ class ReportBuilder {
       tolerance[j] = columns.parameters[std::size_t(j)].tolerance;
     }
     const BlockArray blocks = build_blocks(*variant.model, columns.selected, all_, options_.threads);
-    for (std::size_t i = 0; i < blocks.count(); ++i) {
-      const Eigen::MatrixXd scaled = blocks.block(i) * tolerance.asDiagonal();
-      information.poses.emplace_back(list_.ids[i], scaled.transpose() * scaled);
-    }
+    for (std::size_t i = 0; i < blocks.count(); ++i)
+      information.poses.emplace_back(list_.ids[i], blocks.block(i) * tolerance.asDiagonal());
     if (study_.prior) information.prior = Eigen::MatrixXd::Identity(m, m);
-    for (const TestPoint& point : variant.test_points) {
-      const Eigen::MatrixXd scaled = point.A * tolerance.asDiagonal();
-      information.test.emplace_back(point.weight, scaled.transpose() * scaled);
-    }
+    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(blocks.all().rows() + m, m);
+    all.topRows(blocks.all().rows()) = blocks.all() * tolerance.asDiagonal();
+    if (study_.prior) all.bottomRows(m).setIdentity();
+    information.triangle =
+        Eigen::HouseholderQR<Eigen::MatrixXd>(all).matrixQR().topRows(m).triangularView<Eigen::Upper>();
+    for (const TestPoint& point : variant.test_points)
+      information.test.emplace_back(point.weight, point.A * tolerance.asDiagonal());
     information.singular_values = judgement.evaluations.front().singular_values;
   }
 
   std::optional<CurvePoint> point_of(const Configurations& list, int poses) const {
     try {
-      const Judgement judgement = judge(study_, list);
-      const Evaluation& e = judgement.evaluations.front();
-      CurvePoint point{poses, e.log_det, judgement.rho0, 0.0, false};
-      const VariantColumns& columns = study_.first().columns;
-      for (std::size_t j = std::size_t(columns.nuisance); j < columns.parameters.size(); ++j)
-        point.worst_sigma = std::max(*point.worst_sigma, e.sigma[Eigen::Index(j)] / columns.parameters[j].tolerance);
-      return point;
+      return figures_of(study_, judge(study_, list), poses);
     } catch (const CannotDo&) {
       return std::nullopt;
     }
@@ -224,16 +209,56 @@ class ReportBuilder {
 
   /// After the first, second, … new pose in measuring order.
   void fill_prefix() {
-    Configurations list;
-    list.dimension = new_.dimension;
+    std::vector<std::size_t> order;  // of all_
     // A closed tour shows its first pose twice.
     std::set<int> seen;
     for (const ReportKeyframe& keyframe : report_.keyframes) {
       if (!keyframe.pose || *keyframe.pose < 1 || !seen.insert(*keyframe.pose).second) continue;
       const auto i = std::size_t(std::find(list_.ids.begin(), list_.ids.end(), *keyframe.pose) - list_.ids.begin());
-      if (list_.measured[i]) continue;
+      if (!list_.measured[i]) order.push_back(i);
+    }
+    const bool effect = std::any_of(study_.variants.begin(), study_.variants.end(),
+                                    [](const Variant& v) { return v.effect != nullptr; });
+    if (effect) fill_prefix_by_lists(order);
+    else fill_prefix_by_rows(order);
+  }
+
+  /// An effect makes readings of all poses depend on each other: every part of the list is judged by itself.
+  void fill_prefix_by_lists(const std::vector<std::size_t>& order) {
+    Configurations list;
+    list.dimension = new_.dimension;
+    for (const std::size_t i : order) {
       append(list, all_[i]);
       report_.prefix.push_back(point_of(list, int(list.count())));
+    }
+  }
+
+  void fill_prefix_by_rows(const std::vector<std::size_t>& order) {
+    std::vector<GrowingEvaluation> growing;
+    std::vector<BlockArray> blocks;  // of all_
+    for (const Variant& variant : study_.variants) {
+      growing.emplace_back(variant.columns.parameters, study_.prior ? Prior::every : Prior::none);
+      blocks.push_back(build_blocks(*variant.model, variant.columns.selected, all_, options_.threads));
+      for (std::size_t i = 0; i < all_.count(); ++i)
+        if (list_.measured[i]) growing.back().add(blocks.back().block(i));
+    }
+    for (const std::size_t i : order) {
+      for (std::size_t v = 0; v < growing.size(); ++v) growing[v].add(blocks[v].block(i));
+      report_.prefix.push_back(point_of(growing, int(report_.prefix.size()) + 1));
+    }
+  }
+
+  /// None where the poses do not identify all parameters of all variants.
+  std::optional<CurvePoint> point_of(const std::vector<GrowingEvaluation>& growing, int poses) const {
+    try {
+      Judgement judgement;
+      for (const GrowingEvaluation& one : growing) judgement.evaluations.push_back(one.figures());
+      const std::vector<TestPoint>& points = study_.first().test_points;
+      if (!points.empty())
+        judgement.rho0 = predicted_error(points, judgement.evaluations.front().covariance, judgement.test_errors);
+      return figures_of(study_, judgement, poses);
+    } catch (const CannotDo&) {
+      return std::nullopt;
     }
   }
 
@@ -277,22 +302,6 @@ class ReportBuilder {
     for (double& gain : gains_) gain /= bound.price;
   }
 
-  /// Candidates for plans of other numbers of poses: the plan's own and those of the largest gain.
-  Configurations promising() const {
-    const std::size_t count = std::min(pool_.count(), promising_per_pose * new_.count());
-    if (gains_.empty() || count == pool_.count()) return pool_;
-    std::vector<std::size_t> order(pool_.count());
-    std::iota(order.begin(), order.end(), std::size_t(0));
-    const auto own = std::stable_partition(order.begin(), order.end(), [&](std::size_t i) { return is_chosen(i); });
-    std::stable_sort(own, order.end(), [&](std::size_t a, std::size_t b) { return gains_[a] > gains_[b]; });
-    Configurations best;
-    best.dimension = pool_.dimension;
-    for (std::size_t k = 0; k < count; ++k) append(best, pool_[order[k]]);
-    return best;
-  }
-
-  bool is_chosen(std::size_t i) const { return std::binary_search(chosen_.begin(), chosen_.end(), int(i)); }
-
   void fill_position_errors(const Judgement& judgement) {
     const Variant& variant = study_.first();
     // With an unmodelled effect parameters are not all that the error comes from.
@@ -317,52 +326,15 @@ class ReportBuilder {
     report_.candidates = std::move(candidates);
   }
 
-  /// A plan of so many of the candidates; none if they do not determine the parameters, or after a stop.
-  std::optional<CurvePoint> curve_at(int poses, const Configurations& pool, const std::vector<SearchPart>& parts,
-                                     const std::optional<Spacing>& spacing) const {
-    try {
-      SearchRequest wanted = search_request(study_, poses);
-      if (spacing) wanted.spacing = &*spacing;
-      wanted.bound_tolerance = start_tolerance;
-      wanted.planner.kicks = curve_kicks;
-      const SearchResult found = search(copied_parts(parts), wanted, monitor_);
-      if (monitor_.should_stop()) return std::nullopt;  // not the best plan of so many
-      return point_of(chosen_by(found.design, pool), poses);
-    } catch (const CannotDo&) {
-      return std::nullopt;
-    }
-  }
+  bool stated_curve() const { return as_planned_ && plan_.other_numbers; }
 
-  void fill_curve() {
-    const int own = int(new_.count());
-    const Configurations pool = promising();
-    const double most = double(pool.count()) * study_.repeats.most;
-    std::set<int> numbers;
-    for (const double share : shares)
-      if (const int poses = int(std::lround(share * own)); poses >= 1 && poses != own && poses <= most)
-        numbers.insert(poses);
-    // What takes longest comes first: no thread is left with it at the end.
-    const std::vector<int> wanted(numbers.rbegin(), numbers.rend());
-    std::vector<std::optional<CurvePoint>> points(wanted.size());
-    std::atomic<int> done = 0;
-    std::atomic<bool> left_out = false;
-    std::vector<SearchPart> parts;
-    if (!wanted.empty()) parts = parts_of(pool);
-    const std::optional<Spacing> spacing = study_.distance.among(pool);
-    // One search of few restarts keeps no second thread busy.
-    parallel_for(wanted.size(), thread_count(options_.threads), [&](std::size_t i, int) {
-      if (monitor_.should_stop()) {
-        left_out = true;
-        return;
-      }
-      points[i] = curve_at(wanted[i], pool, parts, spacing);
-      if (monitor_.should_stop()) left_out = true;
-      monitor_.report({"other numbers of poses", double(++done), double(wanted.size()), {}, {}, {}});
-    });
-    if (left_out) report_.notes.emplace_back("Stopped early: some numbers of poses are left out of the curve.");
-    for (const std::optional<CurvePoint>& point : points)
-      if (point) report_.curve.push_back(*point);
-    if (const auto point = point_of(new_, own)) report_.curve.push_back(*point);
+  /// What other numbers of poses reach, as the plan states it if it is still of these poses and this problem.
+  void fill_curve(const Judgement& judgement) {
+    report_.curve =
+        stated_curve() ? *plan_.other_numbers : other_numbers(study_, new_, study_.configurations, {}, monitor_);
+    if (monitor_.should_stop())
+      report_.notes.emplace_back("Stopped early: some numbers of poses are left out of the curve.");
+    report_.curve.push_back(figures_of(study_, judgement, int(new_.count())));
     std::sort(report_.curve.begin(), report_.curve.end(),
               [](const auto& a, const auto& b) { return a.poses < b.poses; });
   }
@@ -375,6 +347,7 @@ class ReportBuilder {
   const PoseList list_;  // the poses of the plan
   const Study study_;
   Configurations all_, new_, pool_;
+  bool as_planned_ = false;    // poses, problem and parameters are those that the plan states
   std::vector<int> chosen_;    // of the pool, in the plan; ascending
   std::vector<double> gains_;  // of the pool
 };

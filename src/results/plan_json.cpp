@@ -1,5 +1,6 @@
 #include "posewright/formats/json_values.hpp"
 #include "posewright/results/discrimination.hpp"
+#include "posewright/results/other_numbers.hpp"
 #include "posewright/results/plan.hpp"
 #include "posewright/results/stated_error.hpp"
 #include "posewright/support/json.hpp"
@@ -288,6 +289,7 @@ std::string plan_json(const Plan& plan, const std::vector<WrittenWith>& files) {
   json["poses"] = Json::array();
   for (const PlannedPose& pose : plan.poses) json["poses"].push_back(planned_pose_json(pose));
   json["statistics"] = statistics_json(plan.statistics);
+  if (plan.other_numbers) json["other_numbers"] = other_numbers_json(json, *plan.other_numbers);
   return json_text(json);
 }
 

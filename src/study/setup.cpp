@@ -134,6 +134,7 @@ Setup resolve(const Problem& problem, const RunOptions& run, const Monitor& moni
   // Of several numbers each search has its share of the time.
   s.planner.use_all_time = purpose != Purpose::plan || s.poses.has_value();
   s.candidates_alone = run.candidates_alone;
+  s.other_numbers = run.other_numbers;
   s.proof = run.proof;
   const bool with_effect = assumes_effect(s);
   if (with_effect) limit_search_with_effect(s);

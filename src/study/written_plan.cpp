@@ -5,6 +5,7 @@
 #include "posewright/lists/parameters_file.hpp"
 #include "posewright/model/elastic_chain.hpp"
 #include "posewright/problem/design_keys.hpp"
+#include "posewright/results/other_numbers.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/json.hpp"
 #include "posewright/support/text_file.hpp"
@@ -54,6 +55,7 @@ WrittenPlan read_written_plan(const std::filesystem::path& file) {
         throw InputError({file.string(), 0},
                          "was made when compliances at listed positions were numbered: '" + name + "'",
                          "plan again; the numbers followed the sorted positions, so they cannot be taken over");
+    plan.other_numbers = read_other_numbers(json, file.string());
     plan.log_det = json.at("criterion").at("log_det").get<double>();
     plan.problem_sha256 = json.at("problem").value("sha256", "");
     if (json["problem"].contains("parameters")) {

@@ -18,6 +18,7 @@
 #include "posewright/problem/design_keys.hpp"
 #include "posewright/study/expected_error.hpp"
 #include "posewright/study/judgement.hpp"
+#include "posewright/study/other_numbers.hpp"
 #include "posewright/study/pose_distance.hpp"
 #include "posewright/study/study.hpp"
 #include "posewright/study/variant.hpp"
@@ -78,6 +79,13 @@ constexpr int most_poses = 2000;
 // Half a 95 % interval of a normal error in σ.
 constexpr double axis_interval = 1.96;
 
+/// A plan with what a search beside it begins with.
+struct Searched {
+  Plan plan;
+  Configurations chosen;           // its poses without fixed and measured ones
+  std::vector<double> references;  // as SearchResult
+};
+
 /// A prepared problem and plans of it.
 class PlanSearch {
  public:
@@ -93,15 +101,28 @@ class PlanSearch {
     if (!study_.why_criterion.empty()) notes_.push_back(study_.why_criterion);
   }
 
-  Plan plan() { return study_.poses ? plan(*study_.poses) : smallest(); }
+  Plan plan() {
+    Searched found = study_.poses ? plan(*study_.poses) : smallest();
+    if (study_.other_numbers && is_thorough() && !monitor_.should_stop()) {
+      std::vector<CurvePoint> points =
+          other_numbers(study_, found.chosen, study_.configurations, found.references, monitor_);
+      // Some of them would look as if more poses did not fit.
+      if (!monitor_.should_stop()) found.plan.other_numbers = std::move(points);
+    }
+    return std::move(found.plan);
+  }
 
  private:
+  /// Searches for other numbers of poses take a few per cent of a search with as many restarts as nobody asked for, and
+  /// up to half of a quick one: then report carries them out.
+  bool is_thorough() const { return study_.planner.restarts >= PlannerOptions{}.restarts; }
+
   static Study prepared(Setup setup, const Monitor& monitor) {
     const std::optional<int> poses = setup.poses;
     return choose_criterion(make_study(std::move(setup), monitor), poses);
   }
 
-  Plan plan(int poses) {
+  Searched plan(int poses) {
     SearchRequest request = spaced_request(study_, poses - fixed());
     if (!study_.candidates_alone) request.make_space = space_maker(study_, study_.criterion);
     request.prove = study_.poses.has_value();
@@ -111,19 +132,19 @@ class PlanSearch {
     if (!study_.robust) return assemble(std::move(found));
     // Last, so that whoever stops it has the plan of the nominal robot.
     RobustPlan robust = plan_robust(study_, found, monitor_);
-    Plan plan = assemble(std::move(found));
-    plan.interrupted = plan.interrupted || robust.stopped;
-    plan.robust = std::move(robust);
-    return plan;
+    Searched searched = assemble(std::move(found));
+    searched.plan.interrupted = searched.plan.interrupted || robust.stopped;
+    searched.plan.robust = std::move(robust);
+    return searched;
   }
 
   /// Doubles the number of poses until everything required is reached, then halves the interval.
-  Plan smallest() {
+  Searched smallest() {
     std::vector<CurvePoint> curve;
     int enough = 0, too_few = std::max(fewest(), fixed() + 1) - 1, unfit = limit() + 1;
-    Plan best;
+    Searched best;
     for (int poses = std::min(too_few + 1, limit()); enough == 0;) {
-      std::optional<Plan> trial = try_plan(poses, curve.empty() && poses == too_few + 1);
+      std::optional<Searched> trial = try_plan(poses, curve.empty() && poses == too_few + 1);
       if (!trial) {
         // At the minimum distance so many do not fit.
         unfit = poses;
@@ -132,19 +153,19 @@ class PlanSearch {
         continue;
       }
       best = std::move(*trial);
-      curve.push_back(judge_requirement(best));
+      curve.push_back(judge_requirement(best.plan));
       if (curve.back().enough) {
         enough = poses;
       } else {
         too_few = poses;
-        if (poses + 1 >= unfit || best.interrupted) fail(curve, best.interrupted);
+        if (poses + 1 >= unfit || best.plan.interrupted) fail(curve, best.plan.interrupted);
         poses = unfit > limit() ? std::min(2 * poses, limit()) : (poses + unfit) / 2;
       }
     }
     while (enough - too_few > 1 && !monitor_.should_stop()) {
       const int middle = (enough + too_few) / 2;
-      Plan trial = plan(middle);
-      curve.push_back(judge_requirement(trial));
+      Searched trial = plan(middle);
+      curve.push_back(judge_requirement(trial.plan));
       if (curve.back().enough) {
         enough = middle;
         best = std::move(trial);
@@ -153,8 +174,8 @@ class PlanSearch {
       }
     }
     std::sort(curve.begin(), curve.end(), [](const auto& a, const auto& b) { return a.poses < b.poses; });
-    best.curve = std::move(curve);
-    best.interrupted = best.interrupted || enough - too_few > 1;
+    best.plan.curve = std::move(curve);
+    best.plan.interrupted = best.plan.interrupted || enough - too_few > 1;
     return best;
   }
 
@@ -201,7 +222,7 @@ class PlanSearch {
   }
 
   /// None if so many poses do not fit, unless that is to be told.
-  std::optional<Plan> try_plan(int poses, bool tell) {
+  std::optional<Searched> try_plan(int poses, bool tell) {
     try {
       return plan(poses);
     } catch (const CannotDo&) {
@@ -223,7 +244,7 @@ class PlanSearch {
     throw CannotDo(text);
   }
 
-  Plan assemble(SearchResult found) const {
+  Searched assemble(SearchResult found) const {
     // Judged from the configurations that will be written, not from anything the search kept.
     order_by_instrument(found);
     const Configurations chosen = chosen_by(found.design, study_.configurations);
@@ -259,7 +280,7 @@ class PlanSearch {
     plan.proved_optimal = found.design.optimal;
     // A search that had its say before the signal came is not distinguished: the run was ended.
     plan.interrupted = found.stopped || monitor_.was_interrupted();
-    return plan;
+    return {std::move(plan), chosen, std::move(found.references)};
   }
 
   /// Poses of one instrument stand together: whoever measures mounts it once.

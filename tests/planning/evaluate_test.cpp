@@ -57,5 +57,26 @@ TEST(Evaluate, RankDeficiencyNamesAParameter) {
   EXPECT_THROW(evaluate(random_blocks(1, 2, 4, 4), labels(4, 0)), CannotDo);
 }
 
+TEST(Evaluate, AListThatGrowsHasAtEveryPoseTheFiguresOfTheWhole) {
+  const BlockArray blocks = random_blocks(12, 2, 7, 5);
+  for (const Prior prior : {Prior::none, Prior::every}) {
+    GrowingEvaluation growing(labels(7, 2), prior);
+    std::vector<int> before;
+    for (int i = 0; i < 12; ++i) {
+      growing.add(blocks.block(std::size_t(i)));
+      before.push_back(i);
+      if (prior == Prior::none && i < 3) {
+        EXPECT_THROW(growing.figures(), CannotDo) << i;
+        continue;
+      }
+      const Evaluation now = growing.figures(), whole = evaluate(blocks.subset(before), labels(7, 2), prior);
+      EXPECT_NEAR(now.log_det, whole.log_det, 1e-10) << i;
+      EXPECT_NEAR(now.log_det_full, whole.log_det_full, 1e-10) << i;
+      EXPECT_LT((now.sigma - whole.sigma).norm(), 1e-11 * whole.sigma.norm()) << i;
+      EXPECT_LT((now.covariance - whole.covariance).norm(), 1e-10 * whole.covariance.norm()) << i;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace posewright

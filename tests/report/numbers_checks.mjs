@@ -1,10 +1,11 @@
 // The page's own numerics on the data of real reports agree with what the program wrote.
+import { matricesOf } from '../../report/src/numerics/information.js';
 import { PlanFigures } from '../../report/src/numerics/plan_figures.js';
 import { check, near } from './checks.mjs';
 
 /** @param {import('./make_reports.mjs').Case} c */
 export function checkNumbers({ plan, data }) {
-  const engine = new PlanFigures(data.columns, data.information);
+  const engine = new PlanFigures(data.columns, matricesOf(data.information, data.columns.length));
   const ids = plan.poses.map((p) => p.id);
   const whole = engine.of(ids);
   check(whole.identifiable, 'all parameters are identifiable from the data');

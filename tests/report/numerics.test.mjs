@@ -11,6 +11,7 @@ import {
   rowsOf,
   traceOfProduct,
 } from '../../report/src/numerics/packed.js';
+import { matricesOf, whitenedRows } from '../../report/src/numerics/information.js';
 import { PlanFigures } from '../../report/src/numerics/plan_figures.js';
 import { cameraOf } from '../../report/src/view/camera_lines.js';
 import { movement } from '../../report/src/view/extent.js';
@@ -252,4 +253,34 @@ test('joints count as movement where the tip stands still', () => {
   const stop = (x) => ({ tip: [0, 0, 0, 0, 0, 0, 1], lines: [[[0, 0, 0], [x, 0, 0]], [[0, 0, x / 2]]] });
   near(movement([stop(-1), stop(3)]), 2);
   near(movement([stop(1), stop(1)]), 1e-6);
+});
+
+test('rows of a pose are whitened integers: their matrix is that of the rows that they came from', () => {
+  // J = W Lᵀ with entries that 2⁻³⁰ divides, so that nothing is rounded.
+  const L = packed([[2], [1, 3], [-1, 0.5, 4]]);
+  const W = [
+    [0.5, -0.25, 0.125],
+    [-1, 0.75, 2 ** -30],
+  ];
+  const bytes = new Uint8Array(24);
+  const view = new DataView(bytes.buffer);
+  W.flat().forEach((w, k) => view.setInt32(4 * k, w * 2 ** 30, true));
+  const rows = btoa(String.fromCharCode(...bytes));
+  assert.deepEqual([...whitenedRows(rows, 3)], W.flat());
+  const full = (i, j) => (j <= i ? L[(i * (i + 1)) / 2 + j] : 0);
+  const J = W.map((w) => [0, 1, 2].map((j) => w.reduce((sum, x, k) => sum + x * full(j, k), 0)));
+  const { poses, prior, test: tested } = matricesOf(
+    { factor: [...L], poses: [{ id: 7, rows }], prior: null, test: [{ weight: 2, rows: J }] },
+    3,
+  );
+  assert.equal(poses[0].id, 7);
+  assert.equal(prior, null);
+  let k = 0;
+  for (let i = 0; i < 3; ++i)
+    for (let j = 0; j <= i; ++j, ++k) {
+      const entry = J[0][i] * J[0][j] + J[1][i] * J[1][j];
+      near(poses[0].packed[k], entry, 1e-12);
+      near(tested[0].packed[k], entry, 1e-12);
+    }
+  assert.throws(() => whitenedRows(rows, 4));
 });

@@ -114,7 +114,7 @@ void expect_as_judged(const Problem& problem, int poses, int candidates, double 
       std::vector<double> own = q;
       if (i != at) {
         own = plain(made.plan.poses[i]);
-        M += unpacked(made.report["information"]["poses"][i]["packed"], m);
+        M += information_of(made.report["information"], made.report["information"]["poses"][i], m);
       }
       own.resize(std::size_t(list.dimension), 0.0);  // one station, one load case
       append(list, own);

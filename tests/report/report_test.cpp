@@ -41,7 +41,7 @@ double interest_log_det(const json& report, int left_out = 0) {
   }
   Eigen::MatrixXd M = Eigen::MatrixXd::Zero(m, m);
   for (const json& pose : report["information"]["poses"])
-    if (pose["id"] != left_out) M += unpacked(pose["packed"], m);
+    if (pose["id"] != left_out) M += information_of(report["information"], pose, m);
   if (!report["information"]["prior"].is_null()) M += unpacked(report["information"]["prior"], m);
   return log_det(M) - (nuisance > 0 ? log_det(M.topLeftCorner(nuisance, nuisance)) : 0.0) - units;
 }
@@ -119,10 +119,10 @@ TEST(Report, AccuracyFollowsFromTheMatricesOfTestPoses) {
   ASSERT_EQ(report["information"]["test"].size(), 12U);
   const auto m = Eigen::Index(report["columns"].size());
   Eigen::MatrixXd M = Eigen::MatrixXd::Zero(m, m);
-  for (const json& pose : report["information"]["poses"]) M += unpacked(pose["packed"], m);
+  for (const json& pose : report["information"]["poses"]) M += information_of(report["information"], pose, m);
   double sum = 0, weights = 0;
   for (const json& test : report["information"]["test"]) {
-    sum += test["weight"].get<double>() * M.llt().solve(unpacked(test["packed"], m)).trace();
+    sum += test["weight"].get<double>() * M.llt().solve(test_information(test, m)).trace();
     weights += test["weight"].get<double>();
   }
   EXPECT_NEAR(std::sqrt(sum / weights), *plan.rho0, 1e-9 * *plan.rho0);

@@ -31,4 +31,22 @@ struct Evaluation {
 Evaluation evaluate(const BlockArray& chosen, const std::vector<Parameter>& parameters, Prior prior = Prior::none,
                     const Eigen::VectorXd& scale = {});
 
+/// Evaluation of a list that grows pose by pose. It keeps R of the QR decomposition of the rows so far (square-root
+/// information filter: Bierman 1977, ch. 4), so a pose costs O(r m²) and its figures O(m³), however many came before.
+class GrowingEvaluation {
+ public:
+  /// @param parameters, prior  as in evaluate()
+  GrowingEvaluation(std::vector<Parameter> parameters, Prior prior);
+  /// @param block  of one pose, raw, r × m
+  void add(const Eigen::Ref<const BlockArray::RowMatrix, 0, Eigen::OuterStride<>>& block);
+  /// log_det, log_det_full, sigma and covariance as evaluate() has them of all poses so far; the rest is empty.
+  /// Throws CannotDo as it does.
+  Evaluation figures() const;
+
+ private:
+  std::vector<Parameter> parameters_;
+  Eigen::VectorXd tolerance_;
+  Eigen::MatrixXd R_;  // m × m, columns in units of their tolerance
+};
+
 }  // namespace posewright

@@ -36,13 +36,13 @@ struct ReportKeyframe {
   std::string instrument{};                               ///< of a list: that reads
 };
 
-/// Data for figures of any subset of the poses: information matrices m × m in units of tolerance, nuisance columns
-/// first.
+/// Data for figures of any subset of the poses, columns in units of their tolerance, nuisance columns first.
 struct ReportInformation {
   std::vector<PlannedParameter> columns;                 ///< of the first variant
-  std::vector<std::pair<int, Eigen::MatrixXd>> poses;    ///< pose id, JᵀJ
-  std::optional<Eigen::MatrixXd> prior;                  ///< counts beside the poses
-  std::vector<std::pair<double, Eigen::MatrixXd>> test;  ///< weight, AᵀA of a test point (m²)
+  std::vector<std::pair<int, Eigen::MatrixXd>> poses;    ///< pose id, whitened rows J (r × m)
+  std::optional<Eigen::MatrixXd> prior;                  ///< counts beside the poses, m × m
+  Eigen::MatrixXd triangle;                              ///< R, upper: RᵀR = Σ JᵀJ + prior
+  std::vector<std::pair<double, Eigen::MatrixXd>> test;  ///< weight, A of a test point (3 × m, m)
   Eigen::VectorXd singular_values;                       ///< interest columns, nuisance eliminated, descending
 };
 

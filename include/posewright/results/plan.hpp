@@ -289,7 +289,8 @@ struct Plan {
   std::vector<InstrumentWorth> instruments{};    ///< of a list
   double prior_share = 0.0;                      ///< of the information, beside those of the instruments of a list
   std::vector<CurvePoint> curve{};               ///< of a plan of the smallest number of poses
-  std::vector<PlannedParameter> parameters;      ///< interest first, then nuisance, then dropped ones
+  std::optional<std::vector<CurvePoint>> other_numbers{};  ///< what other numbers of poses reach; none: not asked for
+  std::vector<PlannedParameter> parameters;                ///< interest first, then nuisance, then dropped ones
   std::vector<PlannedPose> poses;
   PlanStatistics statistics;
   bool interrupted = false;  ///< the search was ended before it was done

@@ -26,6 +26,9 @@ struct RunOptions {
   bool nuisance_counts = false;
   /// Without search and proof between the candidates: a comparison of plans needs neither.
   bool candidates_alone = false;
+  /// Whether the plan says what other numbers of poses reach, unless its search is a quick one (fewer restarts than by
+  /// default): for files that people look at.
+  bool other_numbers = false;
   /// A cell of the same robot with the same tool, of which only obstacles may stand elsewhere: what is known of the
   /// robot's own bodies is taken over. Null: none.
   std::shared_ptr<const Cell> same_robot{};

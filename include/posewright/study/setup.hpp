@@ -24,6 +24,7 @@ struct Setup {
   Scaling scaling = Scaling::tolerance;
   PlannerOptions planner;
   bool candidates_alone = false;  ///< as RunOptions
+  bool other_numbers = false;     ///< as RunOptions
   ProofLimits proof{};
   std::optional<RobustSpec> robust{};  ///< drawn robots; none where the purpose asks for none
   std::shared_ptr<const Cell> cell{};

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,6 +23,8 @@ struct WrittenPlan {
   std::vector<std::pair<std::string, std::string>> design;
   double log_det = 0.0;
   std::string problem_sha256;
+  /// What other numbers of poses reach; none where the file does not say it, or says it of other poses than it has.
+  std::optional<std::vector<CurvePoint>> other_numbers{};
   ParametersFile parameters_file;
 };
 

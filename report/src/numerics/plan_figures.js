@@ -17,7 +17,7 @@ import { add, at, cholesky, inverse, logDet, traceOfProduct } from './packed.js'
 export class PlanFigures {
   /**
    * @param {import('../types.js').Column[]} columns nuisance first
-   * @param {import('../types.js').Information} information
+   * @param {import('../types.js').Matrices} information
    */
   constructor(columns, information) {
     this.columns = columns;

@@ -1,4 +1,5 @@
 import { choicesOf } from '../text/choices.js';
+import { matricesOf } from './information.js';
 import { PlanFigures } from './plan_figures.js';
 
 /** Coordinates that differ by less are one: what encoders and rounding leave, rad or m. */
@@ -38,7 +39,7 @@ export function whyNotComparable(a, b) {
 /** Information per parameter of interest of b compared with a, exp((log det b − log det a)/h); null where a plan does not
  * determine its parameters. @param {import('../types.js').Report} a @param {import('../types.js').Report} b */
 export function efficiencyOf(a, b) {
-  const [first, second] = [a, b].map((r) => new PlanFigures(r.columns, r.information));
+  const [first, second] = [a, b].map((r) => new PlanFigures(r.columns, matricesOf(r.information, r.columns.length)));
   const [p, q] = [first, second].map((f) => f.of(f.blocks.keys()).logDet);
   return p === null || q === null ? null : Math.exp((q - p) / first.interest);
 }

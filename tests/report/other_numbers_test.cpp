@@ -1,0 +1,154 @@
+// What other numbers of poses reach: kept in plan.json, and shown as long as it is of the plan's own poses.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "posewright/problem/read_problem.hpp"
+#include "posewright/report/report_problem.hpp"
+#include "posewright/results/plan.hpp"
+#include "posewright/study/written_plan.hpp"
+#include "posewright/support/error.hpp"
+#include "posewright/support/json.hpp"
+#include "tests/kit/design_edits.hpp"
+#include "tests/kit/example_problems.hpp"
+#include "tests/kit/temporary_folder.hpp"
+
+namespace posewright {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+struct Written {
+  TemporaryFolder folder{};
+  Problem problem = read_problem(examples_folder() / "five_bar" / "problem.yaml");
+  json plan;
+
+  explicit Written(bool other_numbers = true, int restarts = 10) {
+    DesignEdits edits;
+    edits.edit("poses", 12);
+    edits.edit("candidates", 200);
+    edits.edit("restarts", restarts);
+    edits.edit("method", "exchange");
+    edits.other_numbers = other_numbers;
+    plan = parse_json(plan_json(planned(problem, edits)));
+  }
+
+  std::vector<CurvePoint> curve_of(const json& edited) const {
+    ReportOptions options;
+    options.candidates = false;
+    return report_problem(problem, folder.write("plan.json", edited.dump()), options, Monitor{}).curve;
+  }
+
+  /// What reading this says.
+  std::string refused(const json& edited) const {
+    try {
+      read_written_plan(folder.write("bad.json", edited.dump()));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  }
+};
+
+/// With the log det of every stated point moved, as no search would find it.
+json moved(json plan) {
+  for (json& point : plan["other_numbers"]["points"]) point["log_det"] = point["log_det"].get<double>() - 100;
+  return plan;
+}
+
+TEST(OtherNumbers, ArePlansOfMorePosesAndFewer) {
+  const Written written;
+  const json& points = written.plan["other_numbers"]["points"];
+  ASSERT_EQ(points.size(), 5U);
+  std::vector<int> numbers;
+  double before = -1e300;
+  for (const json& point : points) {
+    numbers.push_back(point["poses"]);
+    EXPECT_GT(point["log_det"].get<double>(), before) << "more poses tell more";
+    before = point["log_det"];
+  }
+  EXPECT_EQ(numbers, (std::vector<int>{7, 10, 15, 19, 24}));
+  const double own = written.plan["criterion"]["log_det"];
+  EXPECT_LT(points[1]["log_det"].get<double>(), own);
+  EXPECT_GT(points[2]["log_det"].get<double>(), own);
+  // Plans of as many poses, by a search of their own.
+  for (const std::size_t k : {1, 3}) {
+    DesignEdits edits;
+    edits.edit("poses", numbers[k]);
+    edits.edit("candidates", 200);
+    edits.edit("method", "exchange");
+    const double searched = planned(written.problem, edits).log_det;
+    EXPECT_NEAR(points[k]["log_det"].get<double>(), searched, 0.2) << numbers[k];
+  }
+  EXPECT_FALSE(Written(false).plan.contains("other_numbers")) << "nobody asked";
+  EXPECT_FALSE(Written(true, 1).plan.contains("other_numbers")) << "a quick plan";
+}
+
+TEST(OtherNumbers, AReportShowsWhatThePlanStates) {
+  const Written written;
+  const std::vector<CurvePoint> curve = written.curve_of(moved(written.plan));
+  ASSERT_EQ(curve.size(), 6U);
+  EXPECT_EQ(curve[2].poses, 12);
+  EXPECT_NEAR(curve[2].log_det, written.plan["criterion"]["log_det"].get<double>(), 1e-9);
+  for (const std::size_t k : {0, 1, 3, 4, 5}) {
+    const json& point = written.plan["other_numbers"]["points"][k < 2 ? k : k - 1];
+    EXPECT_EQ(curve[k].poses, point["poses"]);
+    EXPECT_NEAR(curve[k].log_det, point["log_det"].get<double>() - 100, 1e-9) << "read, not searched for";
+  }
+}
+
+TEST(OtherNumbers, OfOtherPosesProblemsOrCriteriaAreSearchedAnew) {
+  const Written written;
+  const auto expect_new = [&](json edited, const std::string& what) {
+    for (const CurvePoint& point : written.curve_of(moved(std::move(edited))))
+      EXPECT_GT(point.log_det, written.plan["criterion"]["log_det"].get<double>() - 50) << what;
+  };
+  json edited = written.plan;
+  edited["poses"][4]["configuration"][0] = edited["poses"][4]["configuration"][0].get<double>() + 1e-3;
+  expect_new(edited, "a pose was moved");
+  edited = written.plan;
+  edited["poses"].erase(3);
+  expect_new(edited, "a pose was taken out");
+  edited = written.plan;
+  edited["problem"]["sha256"] = std::string(64, '0');
+  expect_new(edited, "another problem");
+  edited = written.plan;
+  edited["criterion"]["name"] = "a";
+  expect_new(edited, "another criterion");
+  edited = written.plan;
+  edited.erase("other_numbers");
+  EXPECT_EQ(written.curve_of(edited).size(), 6U) << "a file without them";
+  // What only names a pose or follows from it changes nothing.
+  edited = written.plan;
+  std::swap(edited["poses"][0], edited["poses"][1]);
+  edited["poses"][2].erase("tool_pose");
+  EXPECT_LT(written.curve_of(moved(edited))[0].log_det, written.plan["criterion"]["log_det"].get<double>() - 50);
+}
+
+TEST(OtherNumbers, BadValuesAreOneLine) {
+  const Written written;
+  const auto expect_refused = [&](const std::string& pointer, const json& value, const std::string& says) {
+    json edited = written.plan;
+    edited[json::json_pointer(pointer)] = value;
+    const std::string text = written.refused(edited);
+    EXPECT_THAT(text, HasSubstr("other_numbers: " + says)) << pointer;
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 0) << text;
+  };
+  expect_refused("/other_numbers", 7, "has no `of`");
+  expect_refused("/other_numbers/of", nullptr, "has no `of`");
+  expect_refused("/other_numbers/points", "many", "has no `points`");
+  expect_refused("/other_numbers/points/1", 3, "points[1] has no number of poses");
+  expect_refused("/other_numbers/points/1/poses", 0, "points[1] has no number of poses");
+  expect_refused("/other_numbers/points/1/poses", 2.5, "points[1] has no number of poses");
+  expect_refused("/other_numbers/points/2/poses", 8, "points[2] has no more poses than the one before");
+  expect_refused("/other_numbers/points/0/log_det", nullptr, "points[0] has no log_det");
+  expect_refused("/other_numbers/points/0/rho0", "1 mm", "points[0] has no rho0");
+  expect_refused("/other_numbers/points/0/largest_sigma_ratio", -1, "points[0] has a negative error");
+  EXPECT_EQ(written.refused(written.plan), "accepted");
+}
+
+}  // namespace
+}  // namespace posewright

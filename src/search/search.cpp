@@ -294,132 +294,188 @@ Certificate::Workspace certificate_of(const WorkspaceBound& found, int poses, do
   return searched;
 }
 
-}  // namespace
+/// One search: bounds that serve it, the design, the certificate.
+class DesignSearch {
+ public:
+  DesignSearch(std::vector<SearchPart> parts, const SearchRequest& request, const Monitor& monitor)
+      : request_(request),
+        monitor_(monitor),
+        entry_(*find_criterion(request.criterion)),
+        shapes_(shapes_of(parts)),
+        joined_(join(std::move(parts), request, entry_.several_variants, monitor)),
+        criterion_(entry_.make(joined_.data)),
+        function_(criterion_->function()),
+        degree_(function_.degree()),
+        offset_(offset_of(joined_, entry_)),
+        space_(request.make_space ? request.make_space(joined_.R) : nullptr) {}
 
-SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request, const Monitor& monitor) {
-  const CriterionEntry& entry = *find_criterion(request.criterion);
-  require_choice(request, parts.front().blocks.count());
-  std::vector<std::pair<int, int>> shapes;
-  shapes.reserve(parts.size());
-  for (const SearchPart& part : parts) shapes.emplace_back(part.blocks.rows(), part.blocks.columns());
-  const Joined joined = join(std::move(parts), request, entry.several_variants, monitor);
-  const std::shared_ptr<const Criterion> criterion = entry.make(joined.data);
-  const InformationFunction& function = criterion->function();
-  const double degree = function.degree();
-  // Criteria without a bound take their starts from the determinant's weights.
-  const LogDetFunction log_det(joined.nuisance, joined.blocks.columns());
-  ApproximateDesign approximate;
-  std::optional<SpectralBound> spectral;
-  if (request.certify) {
-    approximate = solve_approximate_design(joined.blocks, degree > 0 ? function : log_det,
-                                           bound_options(request, joined.prior), monitor);
-    spectral = spectral_bound_of(joined.blocks, joined, function, request, monitor);
+  SearchResult run() {
+    bound_candidates();
+    bound_workspace();
+    choose();
+    if (!request_.certificate) {
+      result_.certificate.proved = false;
+      return std::move(result_);
+    }
+    // Last, so that whoever stops it has his plan.
+    if (workspace_ && request_.prove)
+      settle_workspace(*workspace_, joined_.blocks, approximate_, function_, *space_, workspace_options_, monitor_);
+    certify_among_candidates();
+    certify_over_workspace();
+    for (const SearchStage& stage : result_.design.stages)
+      result_.stages.push_back({stage.name, stage.value + offset_, efficiency_of(stage), stage.seconds});
+    BlockArray added;
+    if (goes_between()) added = blocks_at(result_.design.added, *space_, joined_);
+    result_.without = without_each(joined_, result_.design, added, function_, share_, request_.planner.threads);
+    result_.chosen = raw_blocks(joined_, shapes_, result_.design);
+    return std::move(result_);
   }
-  if (degree == 0) approximate.sensitivity.clear();
-  const double share = !request.certify ? 0.0 : degree > 0 ? degree : spectral ? spectral_degree : 0.0;
-  const auto space = request.make_space ? request.make_space(joined.R) : nullptr;
-  std::optional<WorkspaceBound> workspace;
-  WorkspaceBoundOptions options;
-  if (space != nullptr && degree > 0 && request.certify && !monitor.should_stop()) {
-    options.starts_alone = !request.certificate && request.poses <= few_poses && !space->margins();
-    options.prior = bound_options(request, joined.prior).prior;
-    options.seed = request.planner.seed;
-    options.proof = request.proof;
-    options.threads = request.planner.threads;
-    options.further_starts = middles_of_uncut_boxes(*space, int(joined.blocks.columns()), options);
-    workspace = workspace_bound(joined.blocks, approximate, function, *space, options, monitor);
+
+ private:
+  static std::vector<std::pair<int, int>> shapes_of(const std::vector<SearchPart>& parts) {
+    std::vector<std::pair<int, int>> shapes;
+    shapes.reserve(parts.size());
+    for (const SearchPart& part : parts) shapes.emplace_back(part.blocks.rows(), part.blocks.columns());
+    return shapes;
   }
 
-  DesignTask task;
-  const int repeats = std::min(request.repeats.most, request.poses);
-  task.candidates = {&joined.blocks, joined.nuisance, repeats, joined.prior.size() > 0 ? &joined.prior : nullptr,
-                     request.spacing};
-  const ReserveCriterion reserve(*criterion);
-  task.criterion = request.reserve ? &reserve : criterion.get();
-  task.poses = request.poses;
-  if (request.certify) task.approximate = &approximate;
-  if (degree > 0 && request.certify) task.bound = approximate.bound_for(request.poses);
-  if (spectral) task.bound = std::min(spectral->bound, task.bound.value_or(spectral->bound));
-  task.space = space.get();
-  task.workspace = workspace ? &*workspace : nullptr;
+  bool goes_between() const { return !result_.design.added.empty(); }
 
-  SearchResult result;
-  result.measure = measure(joined, entry, criterion);
-  result.degree = share;
-  Monitor shifted;
-  shifted.follow(monitor);
-  // People see the log det that will be in the plan, not that of whitened coordinates.
-  const double offset = offset_of(joined, entry);
-  shifted.on_progress = [&](Progress progress) {
-    if (progress.best) *progress.best += offset;
-    if (progress.bound) *progress.bound += offset;
+  void bound_candidates() {
+    if (request_.certify) {
+      // Criteria without a bound take their starts from the determinant's weights.
+      const LogDetFunction log_det(joined_.nuisance, joined_.blocks.columns());
+      approximate_ = solve_approximate_design(joined_.blocks, degree_ > 0 ? function_ : log_det,
+                                              bound_options(request_, joined_.prior), monitor_);
+      spectral_ = spectral_bound_of(joined_.blocks, joined_, function_, request_, monitor_);
+      share_ = degree_ > 0 ? degree_ : spectral_ ? spectral_degree : 0.0;
+    }
+    if (degree_ == 0) approximate_.sensitivity.clear();
+  }
+
+  void bound_workspace() {
+    if (space_ == nullptr || degree_ == 0 || !request_.certify || monitor_.should_stop()) return;
+    WorkspaceBoundOptions& options = workspace_options_;
+    options.starts_alone = !request_.certificate && request_.poses <= few_poses && !space_->margins();
+    options.prior = bound_options(request_, joined_.prior).prior;
+    options.seed = request_.planner.seed;
+    options.proof = request_.proof;
+    options.threads = request_.planner.threads;
+    options.further_starts = middles_of_uncut_boxes(*space_, int(joined_.blocks.columns()), options);
+    workspace_ = workspace_bound(joined_.blocks, approximate_, function_, *space_, options, monitor_);
+  }
+
+  void choose() {
+    DesignTask task;
+    task.candidates = {&joined_.blocks, joined_.nuisance, std::min(request_.repeats.most, request_.poses),
+                       joined_.prior.size() > 0 ? &joined_.prior : nullptr, request_.spacing};
+    const ReserveCriterion reserve(*criterion_);
+    task.criterion = request_.reserve ? &reserve : criterion_.get();
+    task.poses = request_.poses;
+    if (request_.certify) task.approximate = &approximate_;
+    if (degree_ > 0 && request_.certify) task.bound = approximate_.bound_for(request_.poses);
+    if (spectral_) task.bound = std::min(spectral_->bound, task.bound.value_or(spectral_->bound));
+    task.space = space_.get();
+    task.workspace = workspace_ ? &*workspace_ : nullptr;
+    result_.measure = measure(joined_, entry_, criterion_);
+    result_.degree = share_;
+    result_.references = joined_.references;
+    Monitor shifted;
+    shifted.follow(monitor_);
+    shifted.on_progress = [this](const Progress& progress) { report_in_plan_units(progress); };
+    result_.design = make_planner(request_.method)->plan(task, request_.planner, shifted);
+    result_.stopped = approximate_.stopped || result_.design.stopped;
+  }
+
+  /// People see the log det that will be in the plan, not that of whitened coordinates.
+  void report_in_plan_units(Progress progress) const {
+    if (progress.best) *progress.best += offset_;
+    if (progress.bound) *progress.bound += offset_;
     // Poses between the candidates may be better than any of those: then their bound says nothing.
     if (progress.best && progress.bound && *progress.best > *progress.bound) {
       progress.bound.reset();
       progress.efficiency.reset();
     }
-    monitor.report(progress);
-  };
-  result.design = make_planner(request.method)->plan(task, request.planner, shifted);
-  result.stopped = approximate.stopped || result.design.stopped;
-  result.references = joined.references;
-  if (!request.certificate) {
-    result.certificate.proved = false;
-    return result;
+    monitor_.report(progress);
   }
-  // Last, so that whoever stops it has his plan.
-  if (workspace && request.prove)
-    settle_workspace(*workspace, joined.blocks, approximate, function, *space, options, monitor);
-  // Only where the certificate counts them (below): a plan that takes others is not judged by it.
-  if (workspace && share > 0 && !result.design.added.empty()) result.support = workspace->support;
-  result.certificate.proved = share > 0;
-  BlockArray added;
-  if (!result.design.added.empty()) added = blocks_at(result.design.added, *space, joined);
-  if (degree > 0 && request.certify) fill(result.certificate, approximate, joined, request, offset);
-  else if (spectral) fill(result.certificate, {}, joined, request, 0.0);
-  const bool limited = degree > 0 && request.certify && has_limits(request);
-  if (limited && result.design.added.empty())
-    limit(result.certificate, joined.blocks, *request.spacing, joined, function, approximate, request, offset, monitor);
-  if (share > 0 && !result.design.added.empty()) {
-    // Poses between the candidates count as candidates, so that the bound holds for the plan itself; and so do those
-    // that optimal weights over the workspace use.
-    std::vector<std::vector<double>> found = result.design.added;
-    if (workspace) found.insert(found.end(), workspace->support.begin(), workspace->support.end());
-    const BlockArray more = blocks_at(found, *space, joined);
-    if (degree > 0) {
-      const ApproximateDesign extended =
-          extended_bound(joined.blocks, approximate, more, function, bound_options(request, joined.prior), monitor);
-      fill(result.certificate, extended, joined, request, offset);
-    }
-    if (limited)
-      limit(result.certificate, joined_blocks(joined.blocks, more), request.spacing->with(found), joined, function,
-            approximate, request, offset, monitor);
-    if (spectral) spectral = spectral_bound_of(joined_blocks(joined.blocks, more), joined, function, request, monitor);
-    if (degree == 0 && !spectral) result.certificate.proved = false;
-    result.certificate.count += more.count();
-    result.certificate.found = more.count();
+
+  void certify_among_candidates() {
+    Certificate& certificate = result_.certificate;
+    certificate.proved = share_ > 0;
+    if (degree_ > 0 && request_.certify) fill(certificate, approximate_, joined_, request_, offset_);
+    else if (spectral_) fill(certificate, {}, joined_, request_, 0.0);
+    if (goes_between() && share_ > 0) count_places_between();
+    else if (!goes_between() && is_limited()) limit(joined_.blocks, *request_.spacing);
+    tighten(certificate, spectral_, degree_ == 0);
+    // A planner that proves something knows more than the weights alone.
+    if (result_.design.bound && !request_.reserve)
+      certificate.bound = std::min(certificate.bound, *result_.design.bound + offset_);
   }
-  tighten(result.certificate, spectral, degree == 0);
-  // A planner that proves something knows more than the weights alone.
-  if (result.design.bound && !request.reserve)
-    result.certificate.bound = std::min(result.certificate.bound, *result.design.bound + offset);
-  if (workspace) {
-    result.certificate.workspace = certificate_of(*workspace, request.poses, offset, space->margins().has_value());
-    result.certificate.workspace->reached = workspace->value + share * std::log(double(request.poses)) + offset;
+
+  bool is_limited() const { return degree_ > 0 && request_.certify && has_limits(request_); }
+  void limit(const BlockArray& blocks, const Spacing& spacing) {
+    posewright::limit(result_.certificate, blocks, spacing, joined_, function_, approximate_, request_, offset_,
+                      monitor_);
   }
-  // Candidates are a part of the workspace: what their weights prove to be possible, a search between them must not
-  // miss.
-  if (auto& space_wide = result.certificate.workspace; space_wide && !space_wide->proved)
-    space_wide->bound = std::max(space_wide->bound, result.certificate.bound);
-  for (const SearchStage& stage : result.design.stages)
-    result.stages.push_back({stage.name, stage.value + offset,
-                             result.certificate.proved
-                                 ? std::optional(std::exp((stage.value + offset - result.certificate.bound) / share))
-                                 : std::nullopt,
-                             stage.seconds});
-  result.without = without_each(joined, result.design, added, function, result.degree, request.planner.threads);
-  result.chosen = raw_blocks(joined, shapes, result.design);
-  return result;
+
+  /// Poses between the candidates count as candidates, so that the bound holds for the plan itself; and so do those
+  /// that optimal weights over the workspace use.
+  void count_places_between() {
+    Certificate& certificate = result_.certificate;
+    if (workspace_) result_.support = workspace_->support;
+    std::vector<std::vector<double>> found = result_.design.added;
+    found.insert(found.end(), result_.support.begin(), result_.support.end());
+    const BlockArray more = blocks_at(found, *space_, joined_);
+    if (degree_ > 0)
+      fill(certificate,
+           extended_bound(joined_.blocks, approximate_, more, function_, bound_options(request_, joined_.prior),
+                          monitor_),
+           joined_, request_, offset_);
+    if (is_limited()) limit(joined_blocks(joined_.blocks, more), request_.spacing->with(found));
+    if (spectral_)
+      spectral_ = spectral_bound_of(joined_blocks(joined_.blocks, more), joined_, function_, request_, monitor_);
+    if (degree_ == 0 && !spectral_) certificate.proved = false;
+    certificate.count += more.count();
+    certificate.found = more.count();
+  }
+
+  void certify_over_workspace() {
+    if (!workspace_) return;
+    auto& whole = result_.certificate.workspace;
+    whole = certificate_of(*workspace_, request_.poses, offset_, space_->margins().has_value());
+    whole->reached = workspace_->value + share_ * std::log(double(request_.poses)) + offset_;
+    // Candidates are a part of the workspace: what their weights prove to be possible, a search between them must not
+    // miss.
+    if (!whole->proved) whole->bound = std::max(whole->bound, result_.certificate.bound);
+  }
+
+  std::optional<double> efficiency_of(const SearchStage& stage) const {
+    if (!result_.certificate.proved) return std::nullopt;
+    return std::exp((stage.value + offset_ - result_.certificate.bound) / share_);
+  }
+
+  const SearchRequest& request_;
+  const Monitor& monitor_;
+  const CriterionEntry& entry_;
+  const std::vector<std::pair<int, int>> shapes_;
+  const Joined joined_;
+  const std::shared_ptr<const Criterion> criterion_;
+  const InformationFunction& function_;
+  const double degree_, offset_;
+  double share_ = 0.0;  // Φ's degree, or what stands for it in the certificate; 0: there is none
+  const std::unique_ptr<ConfigurationSpace> space_;
+  ApproximateDesign approximate_;
+  std::optional<SpectralBound> spectral_;
+  std::optional<WorkspaceBound> workspace_;
+  WorkspaceBoundOptions workspace_options_;
+  SearchResult result_;
+};
+
+}  // namespace
+
+SearchResult search(std::vector<SearchPart> parts, const SearchRequest& request, const Monitor& monitor) {
+  require_choice(request, parts.front().blocks.count());
+  return DesignSearch(std::move(parts), request, monitor).run();
 }
 
 void certify(Certificate& certificate, double phi, double degree) {

@@ -96,7 +96,7 @@ class Answers(unittest.TestCase):
         self.assertEqual([m["points"] for m in early["motions"]], [m["points"] for m in whole["motions"]])
 
     def test_a_report_says_what_is_left_out(self):
-        self.ended(["report", "plan.json", "-o", "early.html"], "exchange", signal.SIGTERM)
+        self.ended(["report", "plan.json", "-o", "early.html"], "other numbers of poses", signal.SIGTERM)
         page = (FOLDER / "early.html").read_text()
         self.assertIn("Stopped early: some numbers of poses are left out", page)
 

@@ -8,6 +8,7 @@
 #include "posewright/planning/design_task.hpp"
 #include "posewright/study/run_options.hpp"
 #include "posewright/study/variant.hpp"
+#include "posewright/workspace/candidates.hpp"
 
 namespace posewright {
 

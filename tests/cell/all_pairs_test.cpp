@@ -114,8 +114,6 @@ void expect_slow_distances(const Problem& problem, int draws) {
         by_points += change > 0 ? pair.travel.front()[Eigen::Index(k)] * change : 0.0;
       }
       const double changed = std::abs(apart(X) - apart(Y));
-      // FCL 0.7 tells some boxes that are farther away up to a decimetre wrong; no point moves by that.
-      if (std::max(apart(X), apart(Y)) > 0.25 || changed > by_points + 2e-5) continue;
       EXPECT_LE(changed, allowed + 2e-5) << a.name << " and " << b.name << ", coordinate " << one;
       shorter += allowed < 0.5 * by_points;
       if (one >= 0 && allowed > 1e-3) most = std::max(most, changed / allowed);

@@ -35,6 +35,8 @@ class Solid {
   virtual std::optional<Eigen::Vector3d> plane() const { return std::nullopt; }
   /// Largest direction · p of points p of it, own frame; not of a half space.
   virtual double support(const Eigen::Vector3d& direction) const;
+  /// A point of it where that is so large.
+  virtual Eigen::Vector3d farthest(const Eigen::Vector3d& direction) const;
   /// A ball that is in the solid's convex hull.
   const Eigen::Vector3d& inner_centre() const { return inner_centre_; }
   double inner_radius() const { return inner_radius_; }

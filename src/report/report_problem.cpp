@@ -30,8 +30,8 @@ namespace {
 constexpr int shown_candidates = 1000, shown_per_pose = 5;
 // Of what the page shows of candidates to three digits.
 constexpr double shown_tolerance = 1e-4;
-// Relative difference of log det that rounding of written configurations cannot make.
-constexpr double same_log_det = 1e-6;
+// Relative difference of log det and of a predicted error that rounding of written configurations cannot make.
+constexpr double same_figure = 1e-6;
 
 /// As the plan was made, with no more candidates than the page shows.
 Problem reported_problem(const Problem& problem, const WrittenPlan& plan) {
@@ -157,14 +157,27 @@ class ReportBuilder {
       report_.notes.push_back(note + ".");
     else if (!report_.notes.empty())
       report_.notes.push_back("Figures of the plan are for its own poses, recomputed ones for those of the route.");
-    else if (!(std::abs(found - stated) <= same_log_det * std::max(1.0, std::abs(stated))))
+    else if (!(std::abs(found - stated) <= same_figure * std::max(1.0, std::abs(stated))))
       report_.notes.push_back(fmt::format(
           "The plan states log det {:.9g}, its poses give {:.9g}: files that the problem names may have changed.",
           stated, found));
+    else if (std::string note = test_poses_note(judgement); !note.empty()) report_.notes.push_back(std::move(note));
     as_planned_ = report_.notes.empty();
     if (study_.variants.size() > 1)
       report_.notes.push_back("The plan serves several variants; recomputed figures are for '" +
                               study_.first().spec->name + "'.");
+  }
+
+  /// A file of test poses may change and leave log det as it is. Test poses among the candidates are others here than
+  /// in the plan, which has more of them.
+  std::string test_poses_note(const Judgement& judgement) const {
+    if (!problem_.design.test_poses || !plan_.rho0 || !judgement.rho0 ||
+        std::abs(*judgement.rho0 - *plan_.rho0) <= same_figure * *plan_.rho0)
+      return {};
+    return fmt::format(
+        "The plan states a predicted error of {:.9g} m, its poses give {:.9g} m: files that the problem names may have "
+        "changed.",
+        *plan_.rho0, *judgement.rho0);
   }
 
   void note_effect(const Judgement& judgement) {
@@ -330,11 +343,17 @@ class ReportBuilder {
 
   /// What other numbers of poses reach, as the plan states it if it is still of these poses and this problem.
   void fill_curve(const Judgement& judgement) {
-    report_.curve =
-        stated_curve() ? *plan_.other_numbers : other_numbers(study_, new_, study_.configurations, {}, monitor_);
-    if (monitor_.should_stop())
-      report_.notes.emplace_back("Stopped early: some numbers of poses are left out of the curve.");
-    report_.curve.push_back(figures_of(study_, judgement, int(new_.count())));
+    CurvePoint own = figures_of(study_, judgement, int(new_.count()));
+    if (stated_curve()) {
+      report_.curve = *plan_.other_numbers;
+      // At the same test poses as the others.
+      if (own.rho0 && plan_.rho0) own.rho0 = plan_.rho0;
+    } else {
+      report_.curve = other_numbers(study_, new_, study_.configurations, {}, monitor_);
+      if (monitor_.should_stop())
+        report_.notes.emplace_back("Stopped early: some numbers of poses are left out of the curve.");
+    }
+    report_.curve.push_back(own);
     std::sort(report_.curve.begin(), report_.curve.end(),
               [](const auto& a, const auto& b) { return a.poses < b.poses; });
   }

@@ -19,6 +19,9 @@ namespace {
 constexpr std::array<std::string_view, 9> derived_keys = {
     "id", "candidate", "listed", "actuators", "tool_pose", "targets", "nearest", "contribution", "efficiency_without"};
 
+// plan writes five; as many as a page has room for.
+constexpr std::size_t most_points = 100;
+
 bool is_derived(std::string_view key) {
   return std::find(derived_keys.begin(), derived_keys.end(), key) != derived_keys.end();
 }
@@ -40,8 +43,15 @@ std::string identity_of(const Json& plan) {
   if (problem.contains("parameters")) problem["parameters"].erase("file");
   all["problem"] = problem;
   if (plan.contains("variant")) all["variant"] = nlohmann::json(plan.at("variant"));
-  for (const char* key : {"name", "scaling", "prior", "reserve"})
-    all[key] = nlohmann::json(plan.at("criterion").at(key));
+  for (const char* key : {"name", "scaling", "prior"}) all[key] = nlohmann::json(plan.at("criterion").at(key));
+  all["reserve"] = plan.at("criterion").value("reserve", false);
+  // What report takes over from the plan for a search of its own.
+  if (const auto& certificate = plan.at("certificate").at("candidates"); certificate.is_object())
+    all["repeats"] = nlohmann::json(certificate.at("repeats"));
+  if (const auto test = plan.find("discrimination"); test != plan.end() && test->is_object())
+    all["truth"] = nlohmann::json(test->at("truth"));
+  if (plan.contains("variants"))
+    for (const auto& variant : plan.at("variants")) all["variants"].push_back(nlohmann::json(variant.at("name")));
   return sha256_hex(json_text(all, JsonLayout::one_line));
 }
 
@@ -88,12 +98,18 @@ std::optional<std::vector<CurvePoint>> read_other_numbers(const nlohmann::json& 
     refuse(file, "has no `of`", "SHA-256 of problem, criterion and poses, as plan writes it");
   if (!found->contains("points") || !(*found)["points"].is_array())
     refuse(file, "has no `points`", "a list of numbers of poses and what they reach");
+  if ((*found)["points"].size() > most_points)
+    refuse(file, fmt::format("has {} points", (*found)["points"].size()), fmt::format("at most {}", most_points));
   std::vector<CurvePoint> points;
   for (const nlohmann::json& point : (*found)["points"]) points.push_back(point_of(point, points.size(), file));
   for (std::size_t i = 1; i < points.size(); ++i)
     if (points[i].poses <= points[i - 1].poses)
       refuse(file, fmt::format("points[{}] has no more poses than the one before", i), "ascending numbers of poses");
   if ((*found)["of"].get<std::string>() != identity_of(plan)) return std::nullopt;
+  const auto own = std::count_if(plan.at("poses").begin(), plan.at("poses").end(),
+                                 [](const nlohmann::json& pose) { return !pose.value("measured", false); });
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (points[i].poses == own) refuse(file, fmt::format("points[{}] has the plan's own number", i), "other numbers");
   return points;
 }
 

@@ -202,7 +202,8 @@ Bound bound_of(const Joined& joined, const CriterionEntry& entry, const SearchRe
     return result;
   }
   ApproximateDesignOptions options = bound_options(request, joined.prior);
-  options.start = solved.support;
+  // The smallest eigenvalue has kinks: weights of another criterion may leave its solution at a looser bound.
+  if (!spectral) options.start = solved.support;
   const ApproximateDesign approximate =
       solve_approximate_design(joined.blocks, criterion->function(), options, monitor);
   solved.support = approximate.support;

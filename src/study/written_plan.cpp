@@ -57,6 +57,8 @@ WrittenPlan read_written_plan(const std::filesystem::path& file) {
                          "plan again; the numbers followed the sorted positions, so they cannot be taken over");
     plan.other_numbers = read_other_numbers(json, file.string());
     plan.log_det = json.at("criterion").at("log_det").get<double>();
+    if (const Json rho0 = json.value("/accuracy/rho0"_json_pointer, Json()); rho0.is_number())
+      plan.rho0 = rho0.get<double>();
     plan.problem_sha256 = json.at("problem").value("sha256", "");
     if (json["problem"].contains("parameters")) {
       const Json& parameters = json["problem"]["parameters"];

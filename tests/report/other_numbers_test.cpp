@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "posewright/problem/read_problem.hpp"
@@ -11,6 +13,7 @@
 #include "posewright/study/written_plan.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/json.hpp"
+#include "posewright/support/text_file.hpp"
 #include "tests/kit/design_edits.hpp"
 #include "tests/kit/example_problems.hpp"
 #include "tests/kit/temporary_folder.hpp"
@@ -23,10 +26,12 @@ using testing::HasSubstr;
 
 struct Written {
   TemporaryFolder folder{};
-  Problem problem = read_problem(examples_folder() / "five_bar" / "problem.yaml");
+  Problem problem;
   json plan;
 
-  explicit Written(bool other_numbers = true, int restarts = 10) {
+  explicit Written(bool other_numbers = true, int restarts = 10)
+      : Written(read_problem(examples_folder() / "five_bar" / "problem.yaml"), other_numbers, restarts) {}
+  explicit Written(const Problem& of, bool other_numbers = true, int restarts = 10) : problem(of) {
     DesignEdits edits;
     edits.edit("poses", 12);
     edits.edit("candidates", 200);
@@ -119,6 +124,9 @@ TEST(OtherNumbers, OfOtherPosesProblemsOrCriteriaAreSearchedAnew) {
   edited["criterion"]["name"] = "a";
   expect_new(edited, "another criterion");
   edited = written.plan;
+  edited["certificate"]["candidates"]["repeats"] = "2";
+  expect_new(edited, "other repeats");
+  edited = written.plan;
   edited.erase("other_numbers");
   EXPECT_EQ(written.curve_of(edited).size(), 6U) << "a file without them";
   // What only names a pose or follows from it changes nothing.
@@ -126,6 +134,40 @@ TEST(OtherNumbers, OfOtherPosesProblemsOrCriteriaAreSearchedAnew) {
   std::swap(edited["poses"][0], edited["poses"][1]);
   edited["poses"][2].erase("tool_pose");
   EXPECT_LT(written.curve_of(moved(edited))[0].log_det, written.plan["criterion"]["log_det"].get<double>() - 50);
+}
+
+TEST(OtherNumbers, OfTestPosesThatChangedAreSearchedAnew) {
+  // Log det, problem and poses are those of the plan, predicted errors are not.
+  const TemporaryFolder folder;
+  const auto file = folder.write("test.csv", "x [m],y [m]\n0.1,0.2\n-0.1,0.3\n0,0.25\n");
+  std::string text = read_text(examples_folder() / "five_bar" / "problem.yaml", 1 << 20);
+  const std::string design = "design: {";
+  text.insert(text.find(design) + design.size(), "test_poses: {file: " + file.string() + "}, ");
+  const Problem problem = read_problem(folder.write("problem.yaml", text));
+  const Written written(problem);
+  ASSERT_TRUE(written.plan["accuracy"]["rho0"].is_number());
+  const double log_det = written.plan["other_numbers"]["points"][0]["log_det"];
+  EXPECT_NEAR(written.curve_of(moved(written.plan)).front().log_det, log_det - 100, 1e-9) << "nothing has changed";
+  std::ofstream(file) << "x [m],y [m]\n0.15,0.35\n";
+  const std::vector<CurvePoint> curve = written.curve_of(moved(written.plan));
+  EXPECT_GT(curve.front().log_det, log_det - 50);
+  EXPECT_LT(*curve[3].rho0, *curve[2].rho0);
+  EXPECT_LT(*curve[2].rho0, *curve[1].rho0) << "all at the same test poses";
+}
+
+TEST(OtherNumbers, AStopLeavesAStatedCurveWhole) {
+  const Written written;
+  ReportOptions options;
+  std::atomic<bool> stopped = false;
+  Monitor late;
+  late.interrupted = &stopped;
+  late.on_progress = [&](const Progress& progress) {
+    if (progress.stage != "candidates") stopped = true;
+  };
+  const Report report =
+      report_problem(written.problem, written.folder.write("plan.json", written.plan.dump()), options, late);
+  EXPECT_EQ(report.curve.size(), 6U);
+  EXPECT_THAT(report.notes, testing::Not(testing::Contains(HasSubstr("numbers of poses are left out"))));
 }
 
 TEST(OtherNumbers, BadValuesAreOneLine) {
@@ -147,7 +189,15 @@ TEST(OtherNumbers, BadValuesAreOneLine) {
   expect_refused("/other_numbers/points/0/log_det", nullptr, "points[0] has no log_det");
   expect_refused("/other_numbers/points/0/rho0", "1 mm", "points[0] has no rho0");
   expect_refused("/other_numbers/points/0/largest_sigma_ratio", -1, "points[0] has a negative error");
+  expect_refused("/other_numbers/points/1/poses", 12, "points[1] has the plan's own number");
+  json many = json::array();
+  for (int i = 1; i <= 101; ++i)
+    many.push_back({{"poses", 100 + i}, {"log_det", 1}, {"rho0", nullptr}, {"largest_sigma_ratio", 1}});
+  expect_refused("/other_numbers/points", many, "has 101 points");
   EXPECT_EQ(written.refused(written.plan), "accepted");
+  json without = written.plan;
+  without["criterion"].erase("reserve");
+  EXPECT_EQ(written.refused(without), "accepted") << "as a plan of which nobody asked for a reserve";
 }
 
 }  // namespace

@@ -22,6 +22,7 @@ struct WrittenPlan {
   /// Keys of the design that it was made with, as far as it says, and their values.
   std::vector<std::pair<std::string, std::string>> design;
   double log_det = 0.0;
+  std::optional<double> rho0{};  ///< predicted error at the test poses, m
   std::string problem_sha256;
   /// What other numbers of poses reach; none where the file does not say it, or says it of other poses than it has.
   std::optional<std::vector<CurvePoint>> other_numbers{};

@@ -139,7 +139,7 @@ TEST(OtherNumbers, OfOtherPosesProblemsOrCriteriaAreSearchedAnew) {
 TEST(OtherNumbers, OfTestPosesThatChangedAreSearchedAnew) {
   // Log det, problem and poses are those of the plan, predicted errors are not.
   const TemporaryFolder folder;
-  const auto file = folder.write("test.csv", "x [m],y [m]\n0.1,0.2\n-0.1,0.3\n0,0.25\n");
+  const auto file = folder.write("test.csv", "x [m],y [m]\n0.1,0.4\n-0.1,0.3\n0,0.3\n");
   std::string text = read_text(examples_folder() / "five_bar" / "problem.yaml", 1 << 20);
   const std::string design = "design: {";
   text.insert(text.find(design) + design.size(), "test_poses: {file: " + file.string() + "}, ");

@@ -1,6 +1,6 @@
 #include "posewright/formats/json_values.hpp"
 #include "posewright/results/discrimination.hpp"
-#include "posewright/results/other_numbers.hpp"
+#include "posewright/results/other_numbers_json.hpp"
 #include "posewright/results/plan.hpp"
 #include "posewright/results/stated_error.hpp"
 #include "posewright/support/json.hpp"

@@ -5,7 +5,7 @@
 #include "posewright/lists/parameters_file.hpp"
 #include "posewright/model/elastic_chain.hpp"
 #include "posewright/problem/design_keys.hpp"
-#include "posewright/results/other_numbers.hpp"
+#include "posewright/results/other_numbers_json.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/json.hpp"
 #include "posewright/support/text_file.hpp"

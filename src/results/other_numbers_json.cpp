@@ -1,4 +1,4 @@
-#include "posewright/results/other_numbers.hpp"
+#include "posewright/results/other_numbers_json.hpp"
 
 #include <fmt/format.h>
 

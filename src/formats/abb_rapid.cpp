@@ -16,7 +16,7 @@ const ProgramRules rapid_rules = {
     .format = "abb-rapid",
     .default_name = "CalPoses",
     .longest_name = 32,
-    .axes = rapid_axis_names,
+    .axes = rapid_axis_names(),
     .settings = {"sign", "zero_deg", "range_deg", "coupling", "axes", "decimals"},
     .coupling_needed =
         "robots with a parallelogram (IRB 2400, IRB 4400, ...: -1) count axis 3 from the horizontal, "

@@ -19,7 +19,7 @@ const ProgramRules tp_rules = {
     .format = "fanuc-tp",
     .longest_name = 36,
     .capitals = true,
-    .axes = tp_axis_names,
+    .axes = tp_axis_names(),
     .settings = {"sign", "zero_deg", "range_deg", "coupling", "axes", "decimals"},
     .coupling_needed =
         "the controller's J3 is J3 - F*J2 of a URDF: F is 1 for nearly all FANUC arms, -1 for the "

@@ -12,7 +12,7 @@ namespace {
 
 const ProgramRules krl_rules = {.format = "kuka-krl",
                                 .longest_name = 24,
-                                .axes = krl_axis_names,
+                                .axes = krl_axis_names(),
                                 .settings = {"sign", "zero_deg", "range_deg", "coupling", "axes", "decimals"},
                                 .decimals = 5,
                                 .pose = "XP",

@@ -12,7 +12,7 @@ namespace {
 
 const ProgramRules val3_rules = {.format = "staubli-val3",
                                  .longest_name = 32,
-                                 .axes = val3_axis_names,
+                                 .axes = val3_axis_names(),
                                  .settings = {"sign", "zero_deg", "range_deg", "coupling", "axes", "decimals"}};
 
 constexpr const char* xml = "<?xml version=\"1.0\" encoding=\"utf-8\" ?>\n";

@@ -23,7 +23,7 @@ namespace {
 const ProgramRules urscript_rules = {.format = "urscript",
                                      .default_name = "calposes",
                                      .longest_name = 64,
-                                     .axes = urscript_axis_names,
+                                     .axes = urscript_axis_names(),
                                      .settings = {"sign", "zero_deg", "range_deg", "axes", "decimals"},
                                      .decimals = 6};
 

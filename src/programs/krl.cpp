@@ -17,7 +17,7 @@ std::optional<FoundPoint> krl_point(const Expression& list, const Source&) {
   FoundPoint point{list.line};
   bool joints = false, pose = false;
   for (const Expression& item : list.items) {
-    const bool axis = std::ranges::find(krl_axis_names, item.label) != krl_axis_names.end();
+    const bool axis = std::ranges::find(krl_axis_names(), item.label) != krl_axis_names().end();
     joints = joints || (axis && item.label[0] == 'A');
     pose = pose || item.label == "X" || item.label == "Y" || item.label == "Z";
     if (item.is(Kind::constant)) {

@@ -6,16 +6,13 @@
 namespace posewright {
 
 /// Names of axes in programs: six that turn, then the external ones, in the order of the controller.
-inline const std::vector<std::string> krl_axis_names = {"A1", "A2", "A3", "A4", "A5", "A6",
-                                                        "E1", "E2", "E3", "E4", "E5", "E6"};
-inline const std::vector<std::string> rapid_axis_names = {"rax_1", "rax_2", "rax_3", "rax_4", "rax_5", "rax_6",
-                                                          "eax_a", "eax_b", "eax_c", "eax_d", "eax_e", "eax_f"};
+const std::vector<std::string>& krl_axis_names();
+const std::vector<std::string>& rapid_axis_names();
 /// E1 to E3 move with the arm's group; those of a positioner are a group of its own, GP2.
-inline const std::vector<std::string> tp_axis_names = {"J1", "J2", "J3", "J4",     "J5",     "J6",
-                                                       "E1", "E2", "E3", "GP2.J1", "GP2.J2", "GP2.J3"};
+const std::vector<std::string>& tp_axis_names();
 /// Six that turn, of robots without external axes.
-inline const std::vector<std::string> urscript_axis_names = {"base", "shoulder", "elbow", "wrist1", "wrist2", "wrist3"};
-inline const std::vector<std::string> inform_axis_names = {"S", "L", "U", "R", "B", "T"};
-inline const std::vector<std::string> val3_axis_names = {"j1", "j2", "j3", "j4", "j5", "j6"};
+const std::vector<std::string>& urscript_axis_names();
+const std::vector<std::string>& inform_axis_names();
+const std::vector<std::string>& val3_axis_names();
 
 }  // namespace posewright

@@ -125,8 +125,12 @@ TEST(DrawProblem, DrawsOfSeveralInstrumentsThatWhichReads) {
     EXPECT_EQ(camera.instrument, at.instrument);
     const std::string why = verdict(report, k);
     const double rim = least_distance_to_rim(camera, at, 920);
-    if (why.empty()) EXPECT_GE(rim, 0) << "drawn as it is judged";
-    if (why.starts_with("board not in the image")) EXPECT_LT(rim, 0);
+    if (why.empty()) {
+      EXPECT_GE(rim, 0) << "drawn as it is judged";
+    }
+    if (why.starts_with("board not in the image")) {
+      EXPECT_LT(rim, 0);
+    }
     seen[at.instrument].insert(rim >= 0);
   }
   EXPECT_EQ(seen["left_board"].size(), 2u);

@@ -9,7 +9,6 @@
 #include "posewright/study/setup.hpp"
 #include "posewright/study/written_plan.hpp"
 #include "posewright/support/error.hpp"
-#include "posewright/support/json.hpp"
 #include "posewright/support/table.hpp"
 #include "posewright/tasks/planned_pose.hpp"
 #include "report_scene.hpp"
@@ -20,11 +19,8 @@ namespace {
 /// The columns of the variant that the plan estimates.
 VariantColumns planned_columns(const Variant& variant, const WrittenPlan& plan) {
   const VariantColumns all = all_columns(variant);
-  std::vector<std::string> names;
-  const nlohmann::json written = parse_json(plan.text);
-  for (const auto& p : written.at("parameters"))
-    if (p.at("identifiable").get<bool>() && p.value("variant", variant.spec->name) == variant.spec->name)
-      names.push_back(p.at("name").get<std::string>());
+  const auto found = plan.parameters.find(variant.spec->name);
+  const std::vector<std::string> names = found == plan.parameters.end() ? std::vector<std::string>{} : found->second;
   std::vector<int> kept;
   for (std::size_t j = 0; j < all.parameters.size(); ++j)
     if (std::find(names.begin(), names.end(), all.parameters[j].name) != names.end()) kept.push_back(int(j));

@@ -47,6 +47,7 @@ Study reported_study(const Problem& problem, const WrittenPlan& plan, const Pose
   RunOptions run;
   run.seed = plan.seed;
   run.threads = threads;
+  run.kept_parameters = plan.parameters;
   run.measured.emplace();
   for (std::size_t i = 0; i < list.configurations.size(); ++i)
     if (list.measured[i]) run.measured->configurations.push_back(list.configurations[i]);

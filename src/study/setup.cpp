@@ -147,6 +147,8 @@ Setup resolve(const Problem& problem, const RunOptions& run, const Monitor& moni
     Variant variant = place_variant({problem, find_variant(problem, wanted.name.value)}, s.cell, monitor);
     variant.weight = wanted.weight;
     variant.nuisance_counts = run.nuisance_counts;
+    if (const auto kept = run.kept_parameters.find(variant.spec->name); kept != run.kept_parameters.end())
+      variant.kept_parameters = kept->second;
     s.variants.push_back(std::move(variant));
     require_same_coordinates(s.first(), s.variants.back());
   }

@@ -71,11 +71,22 @@ void fill_prior(const Study& study, Variant& variant) {
   variant.prior += blocks.all().transpose() * blocks.all();
 }
 
+/// All columns of the variant; those that it is to keep stand in tiers before the others.
+VariantColumns columns_to_choose_from(const Variant& variant) {
+  VariantColumns all = all_columns(variant);
+  const std::vector<std::string>& kept = variant.kept_parameters;
+  if (kept.empty() || all.tiers.empty()) return all;
+  const int after = 1 + *std::ranges::max_element(all.tiers);
+  for (std::size_t j = 0; j < all.tiers.size(); ++j)
+    if (std::ranges::find(kept, all.parameters[j].name) == kept.end()) all.tiers[j] += after;
+  return all;
+}
+
 void resolve_variant(const Study& study, Variant& variant) {
   const int threads = study.planner.threads;
   const bool known = study.prior || study.measured.count() + study.fixed.count() > 0;
   ResolvedColumns resolved =
-      resolve_columns(*variant.model, study.configurations, all_columns(variant), known, threads);
+      resolve_columns(*variant.model, study.configurations, columns_to_choose_from(variant), known, threads);
   variant.columns = std::move(resolved.columns);
   variant.dropped = std::move(resolved.dropped);
   variant.reasons = std::move(resolved.reasons);

@@ -39,6 +39,18 @@ void fill_design(WrittenPlan& plan, const Json& json) {
     say("design.repeats", certificate.at("repeats").get<std::string>());
 }
 
+void fill_parameters(WrittenPlan& plan, const Json& json) {
+  const auto variant = json.at("variant").get<std::string>();
+  for (const Json& parameter : json.at("parameters")) {
+    const auto name = parameter.at("name").get<std::string>();
+    if (is_numbered_place(name))
+      throw InputError({plan.file.string(), 0},
+                       "was made when compliances at listed positions were numbered: '" + name + "'",
+                       "plan again; the numbers followed the sorted positions, so they cannot be taken over");
+    if (parameter.at("identifiable").get<bool>()) plan.parameters[parameter.value("variant", variant)].push_back(name);
+  }
+}
+
 }  // namespace
 
 WrittenPlan read_written_plan(const std::filesystem::path& file) {
@@ -50,11 +62,7 @@ WrittenPlan read_written_plan(const std::filesystem::path& file) {
     if (json.value("schema", "") != "posewright/plan/1" || json.at("variant").get<std::string>().empty())
       throw_no_plan(file);
     fill_design(plan, json);
-    for (const Json& parameter : json.at("parameters"))
-      if (const auto name = parameter.at("name").get<std::string>(); is_numbered_place(name))
-        throw InputError({file.string(), 0},
-                         "was made when compliances at listed positions were numbered: '" + name + "'",
-                         "plan again; the numbers followed the sorted positions, so they cannot be taken over");
+    fill_parameters(plan, json);
     plan.other_numbers = read_other_numbers(json, file.string());
     plan.log_det = json.at("criterion").at("log_det").get<double>();
     if (const Json rho0 = json.value("/accuracy/rho0"_json_pointer, Json()); rho0.is_number())

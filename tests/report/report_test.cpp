@@ -82,6 +82,24 @@ TEST(Report, MatricesGiveThePlansLogDetAndWhatTheLossOfAPoseCosts) {
   EXPECT_TRUE(report["notes"].empty()) << report["notes"];
 }
 
+TEST(Report, IsOfTheParametersThatThePlanEstimates) {
+  // Of its dependent groups other parameters have the largest columns among the candidates of the report.
+  const TemporaryFolder folder;
+  const Problem problem = read_problem(examples_folder() / "gough" / "problem.yaml");
+  ReportOptions brief;
+  brief.sizes = brief.candidates = false;
+  DesignEdits edits = quick_report(24, 2000);
+  edits.edit("method", "greedy");
+  const auto [plan, report] = make_report(problem, edits, folder, brief);
+  std::vector<std::string> estimated, shown;
+  for (const PlannedParameter& p : plan.parameters)
+    if (p.sigma) estimated.push_back(p.label.name);
+  for (const json& column : report["columns"]) shown.push_back(column["name"]);
+  EXPECT_THAT(shown, testing::UnorderedElementsAreArray(estimated));
+  EXPECT_NEAR(interest_log_det(report), plan.log_det, 1e-9 * std::abs(plan.log_det));
+  EXPECT_TRUE(report["notes"].empty()) << report["notes"];
+}
+
 TEST(Report, SaysWhatCandidatesAndOtherNumbersOfPosesBring) {
   const TemporaryFolder folder;
   const Problem problem = read_problem(examples_folder() / "telescope" / "problem.yaml");

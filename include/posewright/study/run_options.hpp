@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,6 +22,9 @@ struct RunOptions {
   /// Candidates, in place of drawn ones, whatever the limits are; none: as in the problem.
   std::optional<PoseList> candidates_from{};
   std::vector<std::string> variants{};  ///< to prepare, by name; empty: those of the criterion
+  /// Parameters by variant that a variant with `auto` keeps before any others, by name: those that a plan estimates.
+  /// Among few candidates others of a dependent group may have the largest columns.
+  std::map<std::string, std::vector<std::string>> kept_parameters{};
   /// Nuisance parameters and an unmodelled effect count as those of interest do, with ds: poses whose readings are
   /// least certain.
   bool nuisance_counts = false;

@@ -26,7 +26,8 @@ struct Variant {
   std::shared_ptr<const Cell> cell;
   std::unique_ptr<IdentificationModel> model;
   std::unique_ptr<Workspace> workspace;
-  VariantColumns columns{};            ///< that are estimated, nuisance first
+  std::vector<std::string> kept_parameters{};  ///< as RunOptions
+  VariantColumns columns{};                    ///< that are estimated, nuisance first
   std::vector<Parameter> dropped{};    ///< of an automatic variant: what cannot be identified beside the columns
   std::vector<std::string> reasons{};  ///< one equation per dropped parameter
   double weight = 1.0;                 ///< for criteria over several variants

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -27,6 +28,7 @@ struct WrittenPlan {
   /// What other numbers of poses reach; none where the file does not say it, or says it of other poses than it has.
   std::optional<std::vector<CurvePoint>> other_numbers{};
   ParametersFile parameters_file;
+  std::map<std::string, std::vector<std::string>> parameters{};  ///< names of the estimated ones, by variant
 };
 
 /// The problem with the design that the plan was made with.

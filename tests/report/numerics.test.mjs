@@ -18,7 +18,7 @@ import { movement } from '../../report/src/view/extent.js';
 import { composed } from '../../report/src/view/kinematics.js';
 import { between, exaggerated } from '../../report/src/view/interpolate.js';
 import { amplification, amplified, largestDeviation } from '../../report/src/numerics/leg_points.js';
-import { counts } from '../../report/src/numerics/stations.js';
+import { counts, valuesOf } from '../../report/src/numerics/stations.js';
 import { posesCsv } from '../../report/src/save_csv.js';
 import { shell, shellFile } from '../../report/src/sections/reproduce.js';
 import { instruments } from '../../report/src/text/sentences.js';
@@ -192,6 +192,15 @@ test('a place that was not looked at is none that gives no plan', () => {
   const ranking = [{ looked_at: true, phi: 3 }, { looked_at: true, why_not: 'stands inside a body' }, { looked_at: false, why_not: 'ended' }];
   assert.deepEqual(counts(ranking), { looked: 2, all: 3, planned: 1 });
   assert.deepEqual(counts([{ phi: 3 }, { why_not: 'stands inside a body' }]), { looked: 2, all: 2, planned: 1 });
+});
+
+test('places are compared by σ where the program states a ratio, else by the criterion', () => {
+  const rank = { in_full: true, parameters: 5, phi: 3, feasible_share: 1, expected_error: null };
+  const worse = { ...rank, phi: 3 - 10 * Math.log(2) };
+  const nameOf = (ratios) => valuesOf({ criterion: 'ds', ranking: [rank, worse].map((r, k) => ({ ...r, sigma_ratio: ratios[k] })) })[0];
+  assert.match(nameOf([1, 2]).name, /^σ/);
+  assert.equal(nameOf([1, 2]).shown(nameOf([1, 2]).of({ ...worse, sigma_ratio: 2 })).endsWith('×'), true);
+  assert.equal(nameOf([null, null]).name, 'criterion ds');
 });
 
 test('numbers are shown in mm and deg, and proofs are rounded down', () => {

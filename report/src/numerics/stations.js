@@ -18,8 +18,8 @@ export function sigmaRatio(ranking, rank) {
   return Math.exp((best - rank.phi) / (2 * Math.max(rank.parameters, 1)));
 }
 
-/** Whether the criterion is a log-determinant of information, so that its differences are ratios of σ. @param {any} s */
-export const isDeterminant = (s) => s.criterion === 'o1' || s.criterion === 'ds';
+/** Whether differences of the criterion are ratios of σ: then the best place has one. @param {any} s */
+export const hasRatios = (s) => s.ranking.some((r) => typeof r.sigma_ratio === 'number');
 
 /** Whether a plan was looked for; not where the search was ended before. @param {any} rank */
 export const isLookedAt = (rank) => rank.looked_at !== false;
@@ -41,7 +41,7 @@ const errorOf = (rank) => (rank.expected_error ? usualError(rank.expected_error)
 export function valuesOf(s) {
   const good = s.ranking.filter((r) => !r.why_not);
   return [
-    isDeterminant(s)
+    hasRatios(s)
       ? { name: 'σ against the best place', of: (r) => sigmaRatio(s.ranking, r), shown: (v) => `${number(v, 4)} ×`, least: true, span: 0.1 }
       : { name: `criterion ${s.criterion}`, of: (r) => r.phi, shown: (v) => number(v, 5), span: 0.1 },
     { name: 'share of feasible configurations', of: (r) => r.feasible_share, shown: (v) => percent(v), span: 0.1 },

@@ -3,7 +3,7 @@ import { h, section, table } from '../dom.js';
 import { inShort, tile } from '../parts/tiles.js';
 import { commonFacts, repeatSection } from '../parts/repeat.js';
 import { usualError } from '../numerics/expected_error.js';
-import { counts, isDeterminant, isLookedAt, sigmaRatio } from '../numerics/stations.js';
+import { counts, hasRatios, isLookedAt, sigmaRatio } from '../numerics/stations.js';
 import { stationMap } from '../plots/station_map.js';
 import { shell, shellFile } from '../sections/reproduce.js';
 import { number, percent, plural, quantity } from '../text/units.js';
@@ -64,7 +64,7 @@ function rankingSection(s) {
     r.in_full ? 'in full' : 'quickly',
     String(r.parameters),
     number(r.phi, 5),
-    isDeterminant(s) ? `${number(sigmaRatio(s.ranking, r), 4)} ×` : '–',
+    hasRatios(s) ? `${number(sigmaRatio(s.ranking, r), 4)} ×` : '–',
     percent(r.feasible_share),
     ...(withError ? [r.expected_error ? quantity(usualError(r.expected_error), 'm') : '–'] : []),
     r.main_rejection,

@@ -5,8 +5,8 @@ import { list, number, percent, percentDown, plural, quantity } from './units.js
 /** @param {any} plan */
 export const newPoses = (plan) => plan.poses.filter((p) => !p.measured);
 
-/** @param {any} plan */
-export const isDeterminant = (plan) => plan.criterion.name === 'o1' || plan.criterion.name === 'ds';
+/** Whether the plan is bounded by the determinant of the information. @param {any} plan */
+export const isDeterminant = (plan) => plan.certificate.candidates?.log_det_bound !== undefined;
 
 /** @param {any} plan */
 export function what(plan) {

@@ -81,21 +81,23 @@ Spacing usual_spacing(const std::vector<Coordinate>& coordinates, const Configur
   return {};
 }
 
-std::string distance_text(const std::vector<Coordinate>& coordinates, const Spacing& spacing) {
+std::string distance_text(const std::vector<Coordinate>& coordinates, const PoseDistance& distance) {
+  const Spacing& spacing = distance.spacing;
+  const int digits = distance.usual ? 2 : 9;
   std::string text;
   for (const char* unit : {"rad", "m"}) {
     double least = std::numeric_limits<double>::infinity(), most = 0;
     for (std::size_t k = 0; k < coordinates.size(); ++k) {
-      const double distance = spacing.unit[Eigen::Index(k)];
-      if (coordinates[k].unit != unit || coordinates[k].discrete() || std::isinf(distance)) continue;
-      least = std::min(least, distance);
-      most = std::max(most, distance);
+      const double apart = spacing.unit[Eigen::Index(k)];
+      if (coordinates[k].unit != unit || coordinates[k].discrete() || std::isinf(apart)) continue;
+      least = std::min(least, apart);
+      most = std::max(most, apart);
     }
     if (most == 0) continue;
     const bool angle = unit == std::string("rad");
     const double shown = angle ? 180 / std::numbers::pi : 1000;
-    text += (text.empty() ? "" : " or ") + (least < most ? fmt::format("{:.2g} to ", shown * least) : "") +
-            fmt::format("{:.2g} {}", shown * most, angle ? "deg" : "mm");
+    text += (text.empty() ? "" : " or ") + (least < most ? fmt::format("{:.{}g} to ", shown * least, digits) : "") +
+            fmt::format("{:.{}g} {}", shown * most, digits, angle ? "deg" : "mm");
   }
   return text;
 }

@@ -19,6 +19,15 @@ using Json = nlohmann::json;
   throw InputError({file.string(), 0}, "is not a plan of a robot", "plan.json as posewright plan writes it");
 }
 
+/// A distance as plan.json has it ("5 deg or 10 mm") as a value of its key; empty for distances that differ from
+/// coordinate to coordinate ("2.9 to 5 deg"): those are the default.
+std::string distance_value(const std::string& text) {
+  if (text.empty() || text.find(" to ") != std::string::npos) return {};
+  const std::size_t both = text.find(" or ");
+  if (both == std::string::npos) return text;
+  return "{angle: " + text.substr(0, both) + ", length: " + text.substr(both + 4) + "}";
+}
+
 void fill_design(WrittenPlan& plan, const Json& json) {
   const auto say = [&](const char* key, const std::string& value) { plan.design.emplace_back(key, value); };
   const Json& poses = json.at("poses");
@@ -35,8 +44,13 @@ void fill_design(WrittenPlan& plan, const Json& json) {
   say("design.scaling", criterion.at("scaling").get<std::string>());
   say("design.candidates", std::to_string(json.at("statistics").at("candidates_feasible").get<long>()));
   plan.seed = json.at("seed").get<std::uint64_t>();
-  if (const Json& certificate = json.at("certificate").at("candidates"); certificate.is_object())
+  if (const Json& certificate = json.at("certificate").at("candidates"); certificate.is_object()) {
     say("design.repeats", certificate.at("repeats").get<std::string>());
+    if (const auto distance = certificate.find("minimum_distance");
+        distance != certificate.end() && distance->is_string())
+      if (const std::string value = distance_value(distance->get<std::string>()); !value.empty())
+        say("design.minimum_distance", value);
+  }
 }
 
 void fill_parameters(WrittenPlan& plan, const Json& json) {

@@ -136,6 +136,32 @@ TEST(OtherNumbers, OfOtherPosesProblemsOrCriteriaAreSearchedAnew) {
   EXPECT_LT(written.curve_of(moved(edited))[0].log_det, written.plan["criterion"]["log_det"].get<double>() - 50);
 }
 
+TEST(OtherNumbers, SearchedAnewKeepTheDistanceOfThePlan) {
+  // The problem file knows nothing of it. More than some sixty poses do not fit so far apart.
+  const Problem problem = read_problem(examples_folder() / "five_bar" / "problem.yaml");
+  DesignEdits edits;
+  edits.edit("poses", 30);
+  edits.edit("candidates", 900);
+  edits.edit("restarts", 1);
+  edits.edit("method", "exchange");
+  edits.edit("minimum_distance", "45.5 mm");
+  const Plan plan = planned(problem, edits);
+  const TemporaryFolder folder;
+  ReportOptions options;
+  options.candidates = false;
+  const auto file = folder.write("plan.json", plan_json(plan));
+  const std::vector<CurvePoint> curve = report_problem(problem, file, options, Monitor{}).curve;
+  const auto of = [&](int poses) {
+    return std::find_if(curve.begin(), curve.end(), [&](const CurvePoint& point) { return point.poses == poses; });
+  };
+  ASSERT_NE(of(18), curve.end());
+  EXPECT_LT(of(18)->log_det, plan.log_det) << "fewer, as far apart";
+  edits.edit("poses", 18);
+  EXPECT_NEAR(of(18)->log_det, planned(problem, edits).log_det, 0.5);
+  EXPECT_EQ(of(60), curve.end()) << "they do not fit";
+  EXPECT_EQ(parse_json(plan_json(plan))["certificate"]["candidates"]["minimum_distance"], "45.5 mm");
+}
+
 TEST(OtherNumbers, OfTestPosesThatChangedAreSearchedAnew) {
   // Log det, problem and poses are those of the plan, predicted errors are not.
   const TemporaryFolder folder;

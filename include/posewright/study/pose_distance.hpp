@@ -46,7 +46,8 @@ struct PoseDistance {
 /// @param poses  wanted; none: not known yet
 PoseDistance pose_distance(const Study& study, const Configurations& known, const std::optional<int>& poses);
 
-/// The distances for messages: "5 deg", "2.5 to 5 deg or 12 mm".
-std::string distance_text(const std::vector<Coordinate>& coordinates, const Spacing& spacing);
+/// The distances for messages: "5 deg", "2.5 to 5 deg or 12 mm". Those of the problem have all their digits, so that
+/// they can be read again; the default ones have two.
+std::string distance_text(const std::vector<Coordinate>& coordinates, const PoseDistance& distance);
 
 }  // namespace posewright

@@ -3,7 +3,6 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <random>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -35,16 +34,6 @@ struct Planar {
 
 inline std::string replaced_once(std::string text, const std::string& from, const std::string& to) {
   return text.replace(text.find(from), from.size(), to);
-}
-
-template <class Call>
-std::string complaint_of(const Call& call) {
-  try {
-    call();
-    return "accepted";
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
 }
 
 /// Readings of a planar arm whose errors are known, by formulas of this test.

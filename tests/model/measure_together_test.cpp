@@ -9,6 +9,7 @@
 
 #include "posewright/model/model_factory.hpp"
 #include "tests/kit/example_problems.hpp"
+#include "tests/kit/message_of.hpp"
 #include "tests/kit/planar_instruments.hpp"
 #include "tests/kit/virtual_data.hpp"
 
@@ -137,7 +138,8 @@ TEST(ReadTogether, ToolAndTargetsThatStandForItDoNotMix) {
       "type: pose, device: {type: isotropic, noise: {position: 1 um, rotation: 1 urad}}, repeatability: 30 um}\n"
       "  - {name: three, together: [tracker, both]");
   const Planar planar(text);
-  EXPECT_THAT(complaint_of([&] { make_model(planar.problem); }), testing::HasSubstr("cannot read together"));
+  EXPECT_THAT(message_of<std::runtime_error>([&] { make_model(planar.problem); }),
+              testing::HasSubstr("cannot read together"));
 }
 
 }  // namespace

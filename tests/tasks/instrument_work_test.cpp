@@ -12,6 +12,7 @@
 #include "posewright/tasks/plan_problem.hpp"
 #include "posewright/tasks/route_problem.hpp"
 #include "posewright/tasks/simulate_problem.hpp"
+#include "tests/kit/message_of.hpp"
 #include "tests/kit/planar_instruments.hpp"
 #include "tests/kit/pose_lists.hpp"
 #include "tests/kit/two_planar_arms.hpp"
@@ -69,13 +70,13 @@ TEST(InstrumentLimits, MeasuredPosesCount) {
   problem.design.poses->value = 1;
   EXPECT_EQ(read_by(plan_problem(problem, more, Monitor{}), "gauge"), 0);
   problem.design.poses->value = 2;
-  EXPECT_THAT(complaint_of([&] { plan_problem(problem, more, Monitor{}); }),
+  EXPECT_THAT(message_of<std::runtime_error>([&] { plan_problem(problem, more, Monitor{}); }),
               HasSubstr("by their `most`, the instruments may read 1 further poses, and 2 are wanted"));
 }
 
 TEST(InstrumentLimits, AnInstrumentAloneHasItsKeysElsewhere) {
   for (const char* key : {"most: 3", "reading: 2 s", "setup: 1 min", "line_of_sight: {range: [1, 2]}"})
-    EXPECT_THAT(complaint_of([&] {
+    EXPECT_THAT(message_of<std::runtime_error>([&] {
                   Planar(replaced_once(R"(posewright: 1
 robot: {urdf: arm.urdf}
 measurement: {type: position, target: [0, 0, 0], KEY, device: {type: isotropic, noise: 20 um}}
@@ -226,12 +227,12 @@ TEST(InstrumentSight, HoldsForTheInstrumentThatReads) {
   const Variant variant = make_variant(seen.problem, {}, Monitor{});
   EXPECT_GE(variant.workspace->violation(std::vector{1.9, 1.9, 0.0}), 0);
   EXPECT_LT(variant.workspace->violation(std::vector{1.9, 1.9, 1.0}), 0);
-  EXPECT_THAT(complaint_of([&] {
+  EXPECT_THAT(message_of<std::runtime_error>([&] {
                 const Planar both(stands + "workspace: {line_of_sight: {range: [0.1, 5]}}\n");
                 plan_problem(both.problem, {}, Monitor{});
               }),
               HasSubstr("each instrument has its own key line_of_sight"));
-  EXPECT_THAT(complaint_of([&] {
+  EXPECT_THAT(message_of<std::runtime_error>([&] {
                 const Planar gauge(with_keys("most: 8", "line_of_sight: {range: [1, 2]}"));
                 plan_problem(gauge.problem, {}, Monitor{});
               }),

@@ -24,6 +24,7 @@
 #include "posewright/tasks/place_stations.hpp"
 #include "posewright/tasks/simulate_problem.hpp"
 #include "tests/kit/example_problems.hpp"
+#include "tests/kit/message_of.hpp"
 #include "tests/kit/planar_instruments.hpp"
 #include "tests/kit/recompute.hpp"
 #include "tests/kit/virtual_data.hpp"
@@ -267,7 +268,7 @@ TEST(InstrumentList, AnInstrumentThatSeesNothingIsNamed) {
       std::get<CameraMeasurement>(std::get<InstrumentList>(problem.measurement.instrument).instruments[1].instrument);
   camera.camera.rpy = -camera.camera.rpy;
   problem.design.candidates.value = 100;
-  EXPECT_THAT(complaint_of([&] { plan_problem(problem, {}, Monitor{}); }),
+  EXPECT_THAT(message_of<std::runtime_error>([&] { plan_problem(problem, {}, Monitor{}); }),
               HasSubstr("measurement: instrument 'camera' reads at none of the 100 candidates"));
 }
 
@@ -494,15 +495,15 @@ TEST(InstrumentList, WrongDataAreOneLine) {
   const Planar planar;
   const std::string head = "id,q1,q2,instrument,tracker.target.x,tracker.target.y,gauge.A-T\n";
   const auto complaint = [&](const std::string& rows) {
-    return complaint_of([&] { calibrated(planar, head + rows); });
+    return message_of<std::runtime_error>([&] { calibrated(planar, head + rows); });
   };
   EXPECT_THAT(complaint("1,0.1,0.2,tracker,1,0.5,\n2,0.3,0.2,laser,1,0.5,\n"),
               testing::AllOf(HasSubstr("data.csv:3"), HasSubstr("laser"), HasSubstr("tracker")));
   EXPECT_THAT(complaint("1,0.1,0.2,tracker,1,0.5,\n2,0.3,0.2,gauge,1,0.5,0.7\n"),
               HasSubstr("data.csv:3: has a value of 'tracker.target.x' in a row of instrument 'gauge'"));
-  EXPECT_THAT(
-      complaint_of([&] { calibrated(planar, "id,q1,q2,tracker.target.x,tracker.target.y\n1,0.1,0.2,1,0.5\n"); }),
-      HasSubstr("instrument"));
+  EXPECT_THAT(message_of<std::runtime_error>(
+                  [&] { calibrated(planar, "id,q1,q2,tracker.target.x,tracker.target.y\n1,0.1,0.2,1,0.5\n"); }),
+              HasSubstr("instrument"));
 }
 
 TEST(InstrumentList, WhatIsForOneInstrumentRefusesAList) {
@@ -512,9 +513,11 @@ TEST(InstrumentList, WhatIsForOneInstrumentRefusesAList) {
   options.data = planar.folder.write("a.csv", PlanarReadings(1).csv);
   options.campaigns = {planar.folder.write("b.csv", PlanarReadings(2).csv)};
   options.moved = Moved::base;
-  EXPECT_THAT(complaint_of([&] { calibrate_problem(planar.problem, options, Monitor{}); }), HasSubstr(list));
+  EXPECT_THAT(message_of<std::runtime_error>([&] { calibrate_problem(planar.problem, options, Monitor{}); }),
+              HasSubstr(list));
   const Planar placed(std::string(planar_problem) + "workspace: {stations: {among: {B: [1, 0, 0]}}}\n");
-  EXPECT_THAT(complaint_of([&] { place_stations(placed.problem, {}, Monitor{}); }), HasSubstr(list + "stations"));
+  EXPECT_THAT(message_of<std::runtime_error>([&] { place_stations(placed.problem, {}, Monitor{}); }),
+              HasSubstr(list + "stations"));
 }
 
 }  // namespace

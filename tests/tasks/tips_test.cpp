@@ -34,11 +34,6 @@ using testing::Contains;
 using testing::HasSubstr;
 using testing::Not;
 
-template <class Call>
-std::string tips_complaint(const Call& call) {
-  return message_of<std::runtime_error>([&] { call(); }, "accepted");
-}
-
 Eigen::MatrixXd whole_information(const IdentificationModel& model, const std::vector<double>& q) {
   const std::vector<int> all = all_parameters(model);
   BlockArray::RowMatrix J(model.block_rows(all), Eigen::Index(all.size()));
@@ -327,11 +322,11 @@ TEST(Tips, OfLinksThatAreNotThereAreNamed) {
   std::string text = three_tips_problem;
   text.replace(text.find("right: rh"), 9, "right: rhh");
   const ThreeTips three(text);
-  EXPECT_THAT(tips_complaint([&] { make_model(three.problem); }),
+  EXPECT_THAT(message_of<std::runtime_error>([&] { make_model(three.problem); }),
               testing::AllOf(HasSubstr("p.yaml:2: "), HasSubstr("tip 'rhh' is not a link of three.urdf")));
   std::string eye = three_tips_problem;
   eye.replace(eye.find("eye: eye"), 8, "eye: eyes");
-  EXPECT_THAT(tips_complaint([&] { make_model(ThreeTips(eye).problem); }),
+  EXPECT_THAT(message_of<std::runtime_error>([&] { make_model(ThreeTips(eye).problem); }),
               HasSubstr("tip 'eyes' is not a link of three.urdf (did you mean 'eye'?)"));
 }
 
@@ -339,18 +334,18 @@ TEST(Tips, WithoutAJointBetweenAreNamed) {
   std::string text = three_tips_problem;
   text.replace(text.find("right: rh"), 9, "right: head");
   const ThreeTips three(text);
-  EXPECT_THAT(tips_complaint([&] { make_model(three.problem); }),
+  EXPECT_THAT(message_of<std::runtime_error>([&] { make_model(three.problem); }),
               testing::AllOf(HasSubstr("p.yaml:2: "), HasSubstr("no joint moves between 'eye' and 'head'")));
 }
 
 TEST(Tips, AreManyForWhatWorksWithOne) {
   const ThreeTips three;
   const auto& arm = std::get<SerialArmSpec>(three.problem.robot);
-  EXPECT_THAT(tips_complaint([&] { read_urdf_chain(arm, three.problem.at(arm.line)); }),
+  EXPECT_THAT(message_of<std::runtime_error>([&] { read_urdf_chain(arm, three.problem.at(arm.line)); }),
               HasSubstr("p.yaml:2: the instruments see several tips, and this is for one alone"));
   VariantSpec variant = three.problem.variants.front();
   variant.convention = VariantSpec::Convention::dh;
-  EXPECT_THAT(tips_complaint([&] {
+  EXPECT_THAT(message_of<std::runtime_error>([&] {
                 make_model({three.problem, variant});
               }),
               HasSubstr("parameters dh and mdh are those of one way alone"));

@@ -30,8 +30,7 @@ struct PlansToCompare {
 class NamedMonitor {
  public:
   NamedMonitor(const Monitor& monitor, const std::string& name) {
-    monitor_.interrupted = monitor.interrupted;
-    monitor_.deadline = monitor.deadline;
+    monitor_.stop_with(monitor);
     monitor_.on_progress = [&monitor, name](Progress progress) {
       progress.stage = name + ": " + progress.stage;
       monitor.report(progress);

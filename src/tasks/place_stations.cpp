@@ -261,8 +261,7 @@ class StationRanking {
     StationRank rank;
     rank.stations = stations;
     Monitor quiet;  // its plan's own stages would hide how many places are done
-    quiet.interrupted = monitor_.interrupted;
-    quiet.deadline = monitor_.deadline;
+    quiet.stop_with(monitor_);
     try {
       run.same_robot = robot_;
       const Plan plan = plan_problem(with_stations(problem, stations), run, quiet);

@@ -46,8 +46,7 @@ std::vector<FleetPlan> plan_fleet(const std::vector<Problem>& problems, const Ru
   const auto plan_one = [&](std::size_t i) {
     FleetPlan result;
     Monitor quiet;  // the stages of one plan would hide how many are done
-    quiet.interrupted = monitor.interrupted;
-    quiet.deadline = monitor.deadline;
+    quiet.stop_with(monitor);
     try {
       const Plan plan = plan_problem(problems[i], run, quiet);
       result.variant = plan.variant;

@@ -37,10 +37,14 @@ class Monitor {
   TaskEngine* engine = nullptr;
   const ResultStore* store = nullptr;  ///< of drawn candidates; null: each computation draws its own
 
-  /// Stops where the other does, with the same helping hands; progress is its own.
-  void follow(const Monitor& other) {
+  /// Stops where the other does; nothing else is the other's.
+  void stop_with(const Monitor& other) {
     interrupted = other.interrupted;
     deadline = other.deadline;
+  }
+  /// Stops where the other does, with the same helping hands; progress is its own.
+  void follow(const Monitor& other) {
+    stop_with(other);
     engine = other.engine;
     store = other.store;
   }

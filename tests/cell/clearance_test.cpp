@@ -7,6 +7,7 @@
 #include "posewright/support/random.hpp"
 #include "src/cell/body_frames.hpp"
 #include "src/cell/scene.hpp"
+#include "tests/kit/sliding_arm.hpp"
 #include "tests/kit/temporary_folder.hpp"
 
 namespace posewright {
@@ -277,6 +278,19 @@ TEST(Clearance, ThatIsStatedOfAMotionIsTheSmallestOnIt) {
     // Between two of so many states nothing moves by more than a millimetre.
     EXPECT_LE(stated, scanned + motion_resolution + 1e-9);
     EXPECT_GE(stated, scanned - 2e-3);
+  }
+}
+
+// A thin sheet between two states that are far from it, where no point of the arm is faster.
+TEST(Clearance, OfAMotionThroughASheetAtFullSpeedIsNone) {
+  Random random(14, 0);
+  for (int i = 0; i < 100; ++i) {
+    const double angle = random.uniform(-1.5, 1.5);
+    const Workshop shop({{{0.05, 0.0001, 0.05}, ball(angle, 0, 0.6), angle}}, false);
+    const Collision collision(shop.problem, *shop.model);
+    const std::vector<double> from{angle - random.uniform(0.05, 0.6), 0, 0.6},
+        to{angle + random.uniform(0.05, 0.6), 0, 0.6};
+    EXPECT_LE(collision.nearest(from, to)->distance, motion_resolution + 1e-6) << i;
   }
 }
 

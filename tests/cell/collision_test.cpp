@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <set>
 
 #include "posewright/cell/cell.hpp"
 #include "posewright/model/model_factory.hpp"
@@ -114,6 +115,59 @@ TEST(Collision, OfAPairThatOneJointMovesIsNotLookedAtOnlyWhereNoPositionComesNea
   }
 }
 
+// The definition: what moves and each obstacle, and any two of the robot's own bodies that are not joined.
+TEST(Collision, IsAskedOfEveryPairThatMayMeet) {
+  const auto s = planar_setup(
+      "  collision: {tool: [{name: hand, sphere: 0.1}], obstacles: [{name: post, sphere: 0.1, at: [0, 1.8, 0]}, {name: "
+      "floor, plane: [0, 0, 1], at: [0, 0, -1]}]}\n");
+  std::set<std::set<std::string>> pairs;
+  for (const BodyPair& pair : s->collision().scene().pairs)
+    pairs.insert({s->collision().scene().bodies[std::size_t(pair.a)].name,
+                  s->collision().scene().bodies[std::size_t(pair.b)].name});
+  std::set<std::set<std::string>> expected{{"base", "lower"}, {"base", "hand"}, {"upper", "hand"}};
+  for (const char* moving : {"upper", "lower", "hand"})
+    for (const char* obstacle : {"post", "floor"}) expected.insert({moving, obstacle});
+  EXPECT_EQ(pairs, expected);
+}
+
+TEST(Collision, OfTheFirstAndTheLastPairCounts) {
+  for (const double x : {0.5, 1.4}) {
+    const auto s = planar_setup(fmt::format(
+        "  collision: {{self: false, obstacles: [{{name: block, box: [0.1, 0.1, 0.1], at: [{}, 0, 0]}}]}}\n", x));
+    EXPECT_EQ(s->collision().colliding(std::vector<double>{0, 0}), std::pair(x < 1 ? "upper"s : "lower"s, "block"s));
+  }
+}
+
+// Twelve of thirteen positions of the elbow bring the drum to the upper link: that is no contact by design.
+TEST(Collision, OfLinksThatOftenTouchStillCounts) {
+  const auto s = planar_setup("  collision: {tool: [{name: drum, sphere: 0.79}]}\n");
+  EXPECT_THAT(s->collision().always_touching(), testing::Not(testing::Contains("drum and upper")));
+  EXPECT_EQ(s->collision().colliding(std::vector<double>{0, 1.2}), std::pair("drum"s, "upper"s));
+}
+
+// The same robot elsewhere takes over what its own bodies were found to keep: the verdicts are those of a fresh look.
+TEST(Collision, OfTheSameRobotAmongOtherObstaclesIsThatOfAFreshOne) {
+  const auto among = [](double y) {
+    return planar_setup(fmt::format(
+        "  collision: {{clearance: 0.05, tool: [{{name: hand, sphere: 0.1}}], obstacles: [{{name: post, box: [0.2, "
+        "0.2, 1], at: [0.6, {}, 0]}}]}}\n",
+        y));
+  };
+  const auto here = among(1.0), there = among(-0.8);
+  const Collision taken(there->problem, *there->cell->model, &here->collision());
+  Random random(8, 0);
+  int own = 0, post = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const std::vector<double> q{random.uniform(-3, 3), random.uniform(-3, 3)};
+    const int found = there->collision().violation(q);
+    EXPECT_EQ(taken.violation(q), found);
+    own += found == 0;
+    post += found > 0;
+  }
+  EXPECT_GT(own, 50);
+  EXPECT_GT(post, 50);
+}
+
 TEST(Collision, AMirroredCellCollidesInMirroredConfigurations) {
   const auto s = planar_setup(
       "  collision: {clearance: 0.02, obstacles: [{name: a, box: [0.3, 0.2, 1], at: [0.7, 0.9, 0], rpy: [0, 0, "
@@ -197,7 +251,8 @@ TEST_P(Travel, BoundsHowFarAPointOfAnyLinkMoves) {
   };
   std::vector<Eigen::Isometry3d> before(std::size_t(frames->count())), after = before;
   for (int i = 0; i < 300; ++i) {
-    const int b = 1 + random.index(frames->count() - 1), a = random.index(b);
+    const int a = random.index(frames->count()), b = random.index(frames->count());
+    if (a == b) continue;
     const Eigen::Vector3d p(random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3));
     const Eigen::VectorXd bound = frames->travel(0, a, b, {&p, 1});
     std::vector<double> q = draw(), r = draw();
@@ -212,6 +267,81 @@ TEST_P(Travel, BoundsHowFarAPointOfAnyLinkMoves) {
     for (std::size_t k = 0; k < q.size(); ++k) allowed += bound[Eigen::Index(k)] * std::abs(r[k] - q[k]);
     EXPECT_LE((relative(after) - relative(before)).norm(), allowed + 1e-12) << a << " " << b;
   }
+}
+
+/// Joints that follow another one and that reach further the more a slide is out.
+const char* const following = R"(<robot name="following"><link name="base"/><link name="one"/><link name="two"/>
+  <link name="three"/><link name="tip"/>
+  <joint name="j1" type="revolute"><parent link="base"/><child link="one"/><origin xyz="0.1 0 0.3"/><axis xyz="0 1 0"/>
+    <limit lower="-7" upper="7" effort="1" velocity="1"/></joint>
+  <joint name="j2" type="prismatic"><parent link="one"/><child link="two"/><axis xyz="1 0 0"/>
+    <limit lower="0.2" upper="0.9" effort="1" velocity="1"/></joint>
+  <joint name="j3" type="revolute"><parent link="two"/><child link="three"/><origin xyz="0.2 0 0"/><axis xyz="0 1 0"/>
+    <limit lower="-7" upper="7" effort="1" velocity="1"/><mimic joint="j1" multiplier="-2.5" offset="0.1"/></joint>
+  <joint name="j4" type="continuous"><parent link="three"/><child link="tip"/><origin xyz="0.3 0 0"/>
+    <axis xyz="0 0 1"/></joint>
+</robot>)";
+
+/// All there is to know of one pose's motions: how far a point goes, how much it bends, and when all is where it was.
+void expect_bounds_of_motions(const BodyFrames& frames, const std::vector<Coordinate>& coordinates) {
+  Random random(9, 0);
+  const auto count = std::size_t(frames.count());
+  std::vector<Eigen::Isometry3d> X(count), before(count), after(count);
+  for (int i = 0; i < 3000; ++i) {
+    const int a = random.index(frames.count()), b = random.index(frames.count());
+    if (a == b) continue;
+    constexpr double step = 1e-3;
+    std::vector<double> q, change, earlier, later;
+    for (const Coordinate& c : coordinates) {
+      q.push_back(random.uniform(c.lower, c.upper));
+      // Now and then one joint alone, where bounds are nearest to what they bound.
+      change.push_back(random.index(2) == 0 ? 0.0 : (c.upper - c.lower) * random.uniform(-1, 1));
+      earlier.push_back(q.back() - step * change.back());
+      later.push_back(q.back() + step * change.back());
+    }
+    const Eigen::Vector3d p(random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3));
+    frames.poses(q, 0, X);
+    frames.poses(earlier, 0, before);
+    frames.poses(later, 0, after);
+    const auto seen = [&](const auto& Y) {
+      return Eigen::Vector3d(Y[std::size_t(a)].inverse() * (Y[std::size_t(b)] * p));
+    };
+    const Eigen::VectorXd bound = frames.travel(0, a, b, {&p, 1});
+    double travel = 0;
+    for (std::size_t k = 0; k < change.size(); ++k) travel += bound[Eigen::Index(k)] * std::abs(change[k]);
+    EXPECT_LE((seen(after) - seen(before)).norm(), 2 * step * travel * (1 + 1e-3) + 1e-12) << a << " " << b;
+    const auto rate = frames.rate(0, a, b, change, X);
+    ASSERT_TRUE(rate);
+    const double bend = (seen(after) - 2 * seen(X) + seen(before)).norm() / (step * step);
+    EXPECT_LE(bend, travel * (2 * rate->turn - rate->least_turn) * (1 + 1e-3) + 1e-6) << a << " " << b;
+  }
+  for (std::size_t k = 0; k < coordinates.size(); ++k) {
+    const double period = frames.period(k);
+    if (period == 0) continue;
+    std::vector<double> q;
+    for (const Coordinate& c : coordinates) q.push_back(random.uniform(c.lower, c.upper));
+    frames.poses(q, 0, before);
+    q[k] += period;
+    frames.poses(q, 0, after);
+    for (std::size_t f = 0; f < count; ++f)
+      EXPECT_LT((before[f].matrix() - after[f].matrix()).norm(), 1e-12) << coordinates[k].name;
+  }
+}
+
+TEST(Travel, RateAndPeriodBoundJointsThatFollowAndSlide) {
+  const TemporaryFolder folder;
+  folder.write("arm.urdf", following);
+  const Problem problem = read_problem(folder.write(
+      "p.yaml",
+      "posewright: 1\nrobot: {urdf: arm.urdf, base: base, tip: tip}\n"
+      "measurement: {type: pose, device: {type: isotropic, noise: {position: 0.1 mm, rotation: 0.1 mrad}}}\n"
+      "variants: {all: {parameters: auto}}\n"));
+  const auto model = make_model(problem);
+  const auto frames = make_body_frames(problem, *model);
+  ASSERT_EQ(model->coordinates().size(), 3U);
+  EXPECT_EQ(frames->period(0), 0.0);
+  EXPECT_GT(frames->period(2), 6);
+  expect_bounds_of_motions(*frames, model->coordinates());
 }
 
 INSTANTIATE_TEST_SUITE_P(Chains, Travel, testing::ValuesIn(named_chains()),
@@ -229,6 +359,11 @@ TEST(Uncalibrated, MarginIsWhatTheTolerancesMoveTheLinks) {
   // The lower link lies within a sphere about its middle: it may reach 1.4 + 0.406 m from the axis when stretched.
   EXPECT_GT(cell->collision->margin(), 0.03 * 1.7);
   EXPECT_LT(cell->collision->margin(), 0.03 * 1.82);
+  double most = 0;
+  for (const BodyPair& pair : cell->collision->scene().pairs)
+    if (cell->collision->scene().bodies[std::size_t(pair.a)].obstacle)
+      most = std::max(most, pair.clearance - motion_resolution);
+  EXPECT_NEAR(most, cell->collision->margin(), 1e-12) << "kept from the obstacle, where no clearance is asked for";
   EXPECT_NEAR(cell->joint_margin.at("j1"), 0.03, 1e-12);
   EXPECT_EQ(cell->joint_margin.count("j2"), 0U);
 }

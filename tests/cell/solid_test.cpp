@@ -169,6 +169,19 @@ TEST(Distance, IsZeroWhereOneSolidIsInAnother) {
   const SolidPointer room = mesh(box_mesh({4, 4, 4}));
   EXPECT_EQ(distance(*room, at(0, 0, 0), *sphere(0.1), at(0.5, 0.5, 0.5), 1), 0.0);
   EXPECT_EQ(distance(*mesh(box_mesh({0.1, 0.1, 0.1})), at(0.5, 0, 0), *room, at(0, 0, 0), 1), 0.0);
+  // Of surfaces that are not convex, whichever is asked first.
+  TriangleMesh twice = box_mesh({4, 4, 4}), inner = box_mesh({0.1, 0.1, 0.1});
+  const TriangleMesh side = box_mesh({0.2, 0.2, 0.2}), grain = box_mesh({0.02, 0.02, 0.02});
+  for (auto [whole, part] : {std::pair(&twice, &side), std::pair(&inner, &grain)}) {
+    for (const auto& v : part->vertices) whole->vertices.push_back(v + 1.5 * whole->vertices[7]);
+    for (const auto& t : part->triangles) whole->triangles.push_back({t[0] + 8, t[1] + 8, t[2] + 8});
+  }
+  const SolidPointer large = mesh(twice), small = mesh(inner);
+  ASSERT_FALSE(are_convex(*large, *large) || are_convex(*small, *small));
+  for (const SolidPointer& held : {small, box(0.1, 0.2, 0.1), sphere(0.1), cylinder(0.1, 0.3)}) {
+    EXPECT_EQ(distance(*large, at(0, 0, 0), *held, at(0.5, 0.3, 0), 1), 0.0);
+    EXPECT_EQ(distance(*held, at(0.5, 0.3, 0), *large, at(0, 0, 0), 1), 0.0);
+  }
   TriangleMesh open = box_mesh({4, 4, 4});
   open.triangles.pop_back();
   EXPECT_GT(distance(*mesh(open), at(0, 0, 0), *sphere(0.1), at(0.5, 0.5, 0.5), 1), 0.5)

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "posewright/cell/solid.hpp"
 #include "posewright/support/random.hpp"
@@ -145,6 +147,48 @@ TEST(ExactDistance, OfBoxesOfTrianglesIsThatOfTheBoxes) {
     EXPECT_LE(distance(*triangles(a.half), X_a, *triangles(b.half), X_b, 10), exact.most + 1.1e-5) << i;
     EXPECT_GE(distance(*triangles(a.half), X_a, *triangles(b.half), X_b, 10), exact.least - 1.1e-5) << i;
   }
+}
+
+/// Two boxes as one mesh, which is not convex: a round body beside it is asked for the distance of each triangle.
+TEST(ExactDistance, OfAMeshOfTwoBoxesIsThatOfTheNearerOne) {
+  Random random(9, 0);
+  TriangleMesh both;
+  const Simple one{false, {0.5, 0.1, 0.15}}, other{false, {0.1, 0.1, 0.4}};
+  const Vector3d there(0.4, 0.05, 0.5);
+  for (const auto& [half, centre] : {std::pair(one.half, Vector3d(0, 0, 0)), std::pair(other.half, there)}) {
+    const int first = int(both.vertices.size());
+    for (int k = 0; k < 8; ++k)
+      both.vertices.push_back(centre + half.cwiseProduct(Vector3d(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1)));
+    for (const std::array<int, 3>& t : {std::array{0, 2, 1},
+                                        {1, 2, 3},
+                                        {4, 5, 6},
+                                        {5, 7, 6},
+                                        {0, 1, 4},
+                                        {1, 5, 4},
+                                        {2, 6, 3},
+                                        {3, 6, 7},
+                                        {0, 4, 2},
+                                        {2, 4, 6},
+                                        {1, 3, 5},
+                                        {3, 7, 5}})
+      both.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+  const auto solid = make_solid(MeshShape{}, &both);
+  int apart = 0;
+  for (int i = 0; i < 1500; ++i) {
+    const double r = random.uniform(0.02, 0.2);
+    const Simple body{i % 3 > 0, {r, r, random.uniform(0.02, 0.5)}};
+    const Isometry3d X = i % 4 == 0 ? Isometry3d::Identity() : anywhere(random, 1);
+    const Isometry3d Y = i % 8 == 7 ? anywhere(random, 1) : turned_about_one_axis(random, X, i);
+    const Interval a = enclosed(one, X, body, Y), b = enclosed(other, X * Eigen::Translation3d(there), body, Y);
+    if (std::min(a.most, b.most) < 1e-4) continue;
+    ++apart;
+    for (const double found : {distance(*solid, X, *body.solid(), Y, 10), distance(*body.solid(), Y, *solid, X, 10)}) {
+      EXPECT_LE(found, std::min(a.most, b.most) + 1.1e-5) << i;
+      EXPECT_GE(found, std::min(a.least, b.least) - 1.1e-5) << i;
+    }
+  }
+  EXPECT_GT(apart, 800);
 }
 
 }  // namespace

@@ -347,6 +347,35 @@ TEST(Travel, RateAndPeriodBoundJointsThatFollowAndSlide) {
 INSTANTIATE_TEST_SUITE_P(Chains, Travel, testing::ValuesIn(named_chains()),
                          [](const auto& instance) { return std::string(instance.param.name); });
 
+TEST(Travel, BoundsHowFarPointsOfAPlatformMove) {
+  const Problem problem = read_problem(POSEWRIGHT_SOURCE_DIR "/examples/gough/problem.yaml");
+  const auto model = make_model(problem);
+  const auto frames = make_body_frames(problem, *model);
+  Random random(10, 0);
+  std::vector<Eigen::Isometry3d> before(2), after(2);
+  double nearest = 0;
+  for (int i = 0; i < 3000; ++i) {
+    std::vector<double> q, r;
+    for (const Coordinate& c : model->coordinates())
+      q.push_back(c.discrete() ? c.values.front() : random.uniform(c.lower, c.upper));
+    r = q;
+    const int one = i % 4 == 0 ? -1 : random.index(int(q.size()));
+    for (std::size_t k = 0; k < q.size(); ++k)
+      if (const Coordinate& c = model->coordinates()[k]; !c.discrete() && (one < 0 || one == int(k)))
+        r[k] += 0.01 * (random.uniform(c.lower, c.upper) - q[k]);
+    const Eigen::Vector3d p(random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3));
+    const Eigen::VectorXd bound = frames->travel(0, 0, 1, {&p, 1});
+    double allowed = 0;
+    for (std::size_t k = 0; k < q.size(); ++k) allowed += bound[Eigen::Index(k)] * std::abs(r[k] - q[k]);
+    frames->poses(q, 0, before);
+    frames->poses(r, 0, after);
+    const double moved = (after[1] * p - before[1] * p).norm();
+    EXPECT_LE(moved, allowed + 1e-12) << one;
+    if (allowed > 0) nearest = std::max(nearest, moved / allowed);
+  }
+  EXPECT_GT(nearest, 0.9);
+}
+
 TEST(Uncalibrated, MarginIsWhatTheTolerancesMoveTheLinks) {
   // Only the first offset is uncertain: 3 · 0.01 rad at the far end of the arm, 1.8 m and its half width away.
   auto text = planar_problem(

@@ -6,6 +6,7 @@
 #include "posewright/model/elastic_chain.hpp"
 #include "posewright/problem/design_keys.hpp"
 #include "posewright/results/other_numbers_json.hpp"
+#include "posewright/study/pose_distance.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/json.hpp"
 #include "posewright/support/text_file.hpp"
@@ -19,10 +20,10 @@ using Json = nlohmann::json;
   throw InputError({file.string(), 0}, "is not a plan of a robot", "plan.json as posewright plan writes it");
 }
 
-/// A distance as plan.json has it ("5 deg or 10 mm") as a value of its key; empty for distances that differ from
-/// coordinate to coordinate ("2.9 to 5 deg"): those are the default.
+/// A distance as plan.json has it ("5 deg or 10 mm") as a value of its key; empty for the default. Earlier plans did not
+/// mark it, but distances that differ from coordinate to coordinate ("2.9 to 5 deg") nobody can state.
 std::string distance_value(const std::string& text) {
-  if (text.empty() || text.find(" to ") != std::string::npos) return {};
+  if (text.empty() || text.ends_with(default_mark) || text.find(" to ") != std::string::npos) return {};
   const std::size_t both = text.find(" or ");
   if (both == std::string::npos) return text;
   return "{angle: " + text.substr(0, both) + ", length: " + text.substr(both + 4) + "}";

@@ -159,7 +159,16 @@ TEST(OtherNumbers, SearchedAnewKeepTheDistanceOfThePlan) {
   edits.edit("poses", 18);
   EXPECT_NEAR(of(18)->log_det, planned(problem, edits).log_det, 0.5);
   EXPECT_EQ(of(60), curve.end()) << "they do not fit";
-  EXPECT_EQ(parse_json(plan_json(plan))["certificate"]["candidates"]["minimum_distance"], "45.5 mm");
+  const auto stated = [&](const std::string& text) {
+    json written = json::parse(plan_json(plan));
+    written["certificate"]["candidates"]["minimum_distance"] = text;
+    return as_written(problem, read_written_plan(folder.write("edited.json", written.dump()))).design.minimum_distance;
+  };
+  EXPECT_EQ(json::parse(plan_json(plan))["certificate"]["candidates"]["minimum_distance"], "45.5 mm");
+  EXPECT_EQ(stated("45.5 mm")->length, 0.0455);
+  EXPECT_EQ(stated("5 deg or 12 mm")->length, 0.012);
+  // Nobody stated these.
+  for (const char* text : {"5 mm (default)", "5 to 8 mm (default)", "5 to 8 mm"}) EXPECT_FALSE(stated(text)) << text;
 }
 
 TEST(OtherNumbers, OfTestPosesThatChangedAreSearchedAnew) {

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "posewright/criterion/spacing.hpp"
@@ -45,6 +46,9 @@ struct PoseDistance {
 /// @param known  measured or fixed
 /// @param poses  wanted; none: not known yet
 PoseDistance pose_distance(const Study& study, const Configurations& known, const std::optional<int>& poses);
+
+/// Behind the text of a distance that nobody stated, in plans.
+inline constexpr std::string_view default_mark = " (default)";
 
 /// The distances for messages: "5 deg", "2.5 to 5 deg or 12 mm". Those of the problem have all their digits, so that
 /// they can be read again; the default ones have two.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "posewright/lists/parameters_file.hpp"
+#include "posewright/lists/read_poses.hpp"
 #include "posewright/model/elastic_chain.hpp"
 #include "posewright/problem/design_keys.hpp"
 #include "posewright/results/other_numbers_json.hpp"
@@ -20,8 +21,8 @@ using Json = nlohmann::json;
   throw InputError({file.string(), 0}, "is not a plan of a robot", "plan.json as posewright plan writes it");
 }
 
-/// A distance as plan.json has it ("5 deg or 10 mm") as a value of its key; empty for the default. Earlier plans did not
-/// mark it, but distances that differ from coordinate to coordinate ("2.9 to 5 deg") nobody can state.
+/// A distance as plan.json has it ("5 deg or 10 mm") as a value of its key; empty for the default. Earlier plans did
+/// not mark it, but distances that differ from coordinate to coordinate ("2.9 to 5 deg") nobody can state.
 std::string distance_value(const std::string& text) {
   if (text.empty() || text.ends_with(default_mark) || text.find(" to ") != std::string::npos) return {};
   const std::size_t both = text.find(" or ");

@@ -13,6 +13,7 @@
 #include "posewright/support/json.hpp"
 #include "posewright/support/sha256.hpp"
 #include "processes.hpp"
+#include "session.hpp"
 #include "signals.hpp"
 #include "terminal.hpp"
 

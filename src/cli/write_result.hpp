@@ -8,6 +8,7 @@
 #include "command.hpp"
 #include "posewright/results/plan.hpp"
 #include "posewright/support/file.hpp"
+#include "posewright/support/monitor.hpp"
 
 namespace posewright::cli {
 

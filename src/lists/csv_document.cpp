@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "documents.hpp"
+#include "posewright/formats/pose_formats.hpp"
 #include "posewright/lists/read_poses.hpp"
 #include "posewright/problem/units.hpp"
 #include "posewright/support/trimmed.hpp"

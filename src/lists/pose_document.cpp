@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "documents.hpp"
+#include "posewright/formats/pose_formats.hpp"
 #include "posewright/lists/read_poses.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/file.hpp"

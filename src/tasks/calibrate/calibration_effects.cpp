@@ -4,6 +4,7 @@
 #include <map>
 
 #include "calibration_data.hpp"
+#include "posewright/model/campaigns.hpp"
 #include "posewright/model/joint_effects.hpp"
 
 namespace posewright {

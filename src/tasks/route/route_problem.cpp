@@ -17,6 +17,7 @@
 #include "posewright/support/json.hpp"
 #include "posewright/support/parallel.hpp"
 #include "posewright/support/text_file.hpp"
+#include "posewright/tasks/planned_pose.hpp"
 #include "replacements.hpp"
 
 namespace posewright {

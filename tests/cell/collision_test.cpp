@@ -231,16 +231,21 @@ TEST(Motion, ThatIsFreeKeepsThePlainClearanceAtEveryState) {
   EXPECT_GT(blocked, 100);
 }
 
-class Travel : public testing::TestWithParam<NamedChain> {};
-
-TEST_P(Travel, BoundsHowFarAPointOfAnyLinkMoves) {
-  const TemporaryFolder folder;
-  folder.write("arm.urdf", urdf_text(GetParam().joints));
-  const Problem problem = read_problem(folder.write(
+/// The arm without bodies, its pose measured.
+Problem problem_of_arm(const TemporaryFolder& folder, const std::string& urdf) {
+  folder.write("arm.urdf", urdf);
+  return read_problem(folder.write(
       "p.yaml",
       "posewright: 1\nrobot: {urdf: arm.urdf, base: base, tip: tip}\n"
       "measurement: {type: pose, device: {type: isotropic, noise: {position: 0.1 mm, rotation: 0.1 mrad}}}\n"
       "variants: {all: {parameters: auto}}\n"));
+}
+
+class Travel : public testing::TestWithParam<NamedChain> {};
+
+TEST_P(Travel, BoundsHowFarAPointOfAnyLinkMoves) {
+  const TemporaryFolder folder;
+  const Problem problem = problem_of_arm(folder, urdf_text(GetParam().joints));
   const auto model = make_model(problem);
   const auto frames = make_body_frames(problem, *model);
   Random random(7, 0);
@@ -330,12 +335,7 @@ void expect_bounds_of_motions(const BodyFrames& frames, const std::vector<Coordi
 
 TEST(Travel, RateAndPeriodBoundJointsThatFollowAndSlide) {
   const TemporaryFolder folder;
-  folder.write("arm.urdf", following);
-  const Problem problem = read_problem(folder.write(
-      "p.yaml",
-      "posewright: 1\nrobot: {urdf: arm.urdf, base: base, tip: tip}\n"
-      "measurement: {type: pose, device: {type: isotropic, noise: {position: 0.1 mm, rotation: 0.1 mrad}}}\n"
-      "variants: {all: {parameters: auto}}\n"));
+  const Problem problem = problem_of_arm(folder, following);
   const auto model = make_model(problem);
   const auto frames = make_body_frames(problem, *model);
   ASSERT_EQ(model->coordinates().size(), 3U);

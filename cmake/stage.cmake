@@ -68,12 +68,13 @@ endfunction()
 posewright_cold(posewright_parsed_cold)
 
 # posewright_instruction_sets(STAGE PREFIX flags...): inner loops of a stage, compiled once for each instruction set from
-# PREFIX_sse2.cpp and, on x86, PREFIX_avx2.cpp and PREFIX_avx512.cpp. No contraction: every set computes the same bits.
+# PREFIX_sse2.cpp and, on x86, PREFIX_avx2.cpp and PREFIX_avx512.cpp. No contraction, unless the flags want it: every
+# set computes the same bits.
 function(posewright_instruction_sets stage prefix)
   set(flags -O3 -ffp-contract=off ${ARGN})
   set(sets sse2)
-  set(flags_avx2 -mavx2)
-  set(flags_avx512 -mavx2 -mavx512f -mavx512vl)
+  set(flags_avx2 -mavx2 -mfma)
+  set(flags_avx512 -mavx2 -mfma -mavx512f -mavx512vl)
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
     list(APPEND sets avx2 avx512)
   endif()

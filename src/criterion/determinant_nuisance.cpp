@@ -18,13 +18,11 @@ class NuisanceState : public DesignState {
   }
 
   double value() const override { return rest_.value(); }
-  double loss(int position) const override {
-    return rest_.sensitivities()[std::size_t(members()[std::size_t(position)])];
-  }
+  double loss(int position) const override { return rest_.sensitivity(members()[std::size_t(position)]); }
 
   Swap best_addition() override {
     rest_.leave(-1);
-    const std::vector<double>& d = rest_.sensitivities();
+    const std::vector<double>& d = rest_.sensitivity_bounds();
     Swap best{-1, -infinity};
     for (int j = 0; j < int(blocks().count()); ++j) {
       if (blocked()[std::size_t(j)] != 0 || d[std::size_t(j)] <= best.gain) continue;
@@ -63,9 +61,9 @@ class NuisanceState : public DesignState {
 
   void do_change(int leave, int enter) override { rest_.exchange(leave, enter); }
 
-  /// Candidate of the largest sensitivity that may enter; their number if none may.
+  /// Candidate of the largest bound that may enter; their number if none may.
   std::size_t likely_best() const {
-    const std::vector<double>& d = rest_.sensitivities();
+    const std::vector<double>& d = rest_.sensitivity_bounds();
     std::size_t best = d.size();
     for (std::size_t j = 0; j < d.size(); ++j)
       if (blocked()[j] == 0 && (best == d.size() || d[j] > d[best])) best = j;

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "kernels/bounds.hpp"
 #include "kernels/kernels.hpp"
-#include "posewright/criterion/sensitivity.hpp"
 #include "posewright/criterion/summed_information.hpp"
 #include "posewright/support/dense.hpp"
 #include "regular.hpp"
@@ -34,6 +34,8 @@ LeaveOneOut::LeaveOneOut(const BlockArray& blocks, int nuisance, const Eigen::Ma
   tiles_ = padded_nuisance_ / 16 + interest_tiles;
   t_.assign(std::size_t(m * 16 * tiles_), 0.0);
   scratch_.resize(std::size_t(blocks.rows() * (16 * tiles_ + 2 * blocks.rows())));
+  single_scratch_.resize(std::size_t(3 * blocks.stride()));
+  for (std::size_t j = 0; j < blocks.count(); ++j) size_.push_back(blocks.block(j).norm());
   for (int i = 0; i < padded_nuisance_ / 16; ++i) tile_rows_.push_back(std::min(nuisance, 16 * (i + 1)));
   for (int i = 0; i < interest_tiles; ++i) tile_rows_.push_back(std::min(m, nuisance + 16 * (i + 1)));
 }
@@ -66,12 +68,35 @@ void LeaveOneOut::factorise() {
   d_is_of_now_ = false;
 }
 
-const std::vector<double>& LeaveOneOut::sensitivities() const {
+void LeaveOneOut::SingleCopy::set(const Eigen::MatrixXd& matrix) {
+  rows = int(matrix.rows());
+  columns = int(matrix.cols());
+  data.assign(std::size_t(rows * round16(columns)), 0.0F);
+  for (int i = 0; i < rows; ++i)
+    for (int j = 0; j < columns; ++j) data[std::size_t(i * round16(columns) + j)] = float(matrix(i, j));
+  // A sum of n products is wrong by no more than γ_n of the sum of their sizes (Higham 2002, section 3.1); both factors
+  // were rounded before.
+  error = (rows + 8) * 0x1p-24 * matrix.norm();
+}
+
+SingleMatrix LeaveOneOut::SingleCopy::view(int leading) const {
+  return {data.data(), rows, columns, round16(columns), leading, error};
+}
+
+double LeaveOneOut::sensitivity(int j) const {
+  const Eigen::MatrixXd Z =
+      inverse_factor_.bottomRows(inverse_factor_.rows() - nuisance_) * blocks_.block(std::size_t(j)).transpose();
+  return Z.squaredNorm();
+}
+
+const std::vector<double>& LeaveOneOut::sensitivity_bounds() const {
   // Of several changes in a row, as a perturbation makes them, nobody asks in between.
   if (d_is_of_now_) return d_;
-  Eigen::MatrixXd T = inverse_factor_.transpose();
-  T.leftCols(nuisance_).setZero();
-  posewright::sensitivities(blocks_, T, 1, d_);
+  SingleCopy T;
+  T.set(inverse_factor_.bottomRows(inverse_factor_.rows() - nuisance_).transpose());
+  d_.resize(blocks_.count());
+  bound_kernels().traces(blocks_.data(), blocks_.count(), blocks_.rows(), blocks_.stride(), size_.data(),
+                         T.view(nuisance_), single_scratch_.data(), d_.data());
   d_is_of_now_ = true;
   return d_;
 }
@@ -88,43 +113,38 @@ void LeaveOneOut::leave(int k) {
 }
 
 void LeaveOneOut::prepare_bound(int k, bool regular) {
-  leaving_ = k;
-  half_.clear();
+  leaving_sensitivity_ = k < 0 ? 0 : sensitivity(k);
+  has_bound_ = false;
   if (k < 0 || !regular) return;
   const auto r = Eigen::Index(blocks_.rows());
   const Eigen::MatrixXd W = inverse_factor_.triangularView<Eigen::Lower>() * blocks_.block(std::size_t(k)).transpose();
-  half_.assign(std::size_t(2 * r * blocks_.stride()), 0.0);
   // Of all columns, then of the nuisance ones alone: their factor is the leading part of the whole one.
   for (const Eigen::Index columns : {W.rows(), Eigen::Index(nuisance_)}) {
     if (columns == 0) continue;
     const auto own = W.topRows(columns);
     const Eigen::LLT<Eigen::MatrixXd> rest(Eigen::MatrixXd(Eigen::MatrixXd::Identity(r, r) - own.transpose() * own));
-    if (rest.info() != Eigen::Success || !(rest.matrixLLT().diagonal().minCoeff() > nearly_indispensable)) {
-      half_.clear();
-      return;
-    }
-    const Eigen::MatrixXd U =
-        inverse_factor_.topLeftCorner(columns, columns).triangularView<Eigen::Lower>().transpose() *
-        Eigen::MatrixXd(rest.matrixL().solve(own.transpose()).transpose());
-    const Eigen::Index first = columns == W.rows() ? 0 : r;
-    for (Eigen::Index l = 0; l < r; ++l)
-      std::copy_n(U.col(l).data(), columns, half_.data() + (first + l) * blocks_.stride());
+    if (rest.info() != Eigen::Success || !(rest.matrixLLT().diagonal().minCoeff() > nearly_indispensable)) return;
+    (columns == W.rows() ? half_ : nuisance_half_)
+        .set(inverse_factor_.topLeftCorner(columns, columns).triangularView<Eigen::Lower>().transpose() *
+             Eigen::MatrixXd(rest.matrixL().solve(own.transpose()).transpose()));
   }
+  has_bound_ = true;
 }
 
 std::size_t LeaveOneOut::next(std::size_t first, double wanted, const std::vector<unsigned char>& blocked) const {
-  const std::vector<double>& d = sensitivities();
+  const std::vector<double>& d = sensitivity_bounds();
   const int r = blocks_.rows();
-  double least = leaving_ < 0 ? wanted : d[std::size_t(leaving_)] + wanted;
+  double least = leaving_sensitivity_ + wanted;
   if (std::isfinite(value_)) least = std::max(least, (1 - rounding) * r * std::expm1(wanted / r) - rounding);
-  if (half_.empty()) {
+  if (!has_bound_) {
     for (std::size_t j = first; j < blocks_.count(); ++j)
       if (d[j] > least && blocked[j] == 0) return j;
     return blocks_.count();
   }
   const double least_sum = (1 - rounding) * r * std::expm1((wanted + reference_ - without_) / r) - rounding;
-  return kernels().next_between(blocks_.data(), first, blocks_.count(), r, blocks_.stride(), half_.data(), r,
-                                nuisance_ > 0 ? r : 0, d.data(), blocked.data(), least, least_sum);
+  return bound_kernels().next_between(blocks_.data(), first, blocks_.count(), r, blocks_.stride(), size_.data(),
+                                      half_.view(half_.rows), nuisance_half_.view(nuisance_half_.rows), d.data(),
+                                      blocked.data(), least, least_sum, single_scratch_.data());
 }
 
 void LeaveOneOut::tile(const Eigen::MatrixXd& inverse_factor) {

@@ -51,12 +51,12 @@ class Share {
   /// Variant with the ridge of a singular design, the reference of gains.
   double reference() const { return of(rest_.reference()); }
   /// ∂ ln e_v per unit of weight on candidate j.
-  double sensitivity(int j) const { return rest_.sensitivities()[std::size_t(j)] / interest_; }
-  /// No less than gain(j): Φ is concave, and no swap gains more than adding alone.
-  double most(int j, int leaving) const {
-    const std::vector<double>& all = rest_.sensitivities();
-    const double d = all[std::size_t(j)], r = scenario_.blocks->rows();
-    return std::min(d - (leaving < 0 ? 0.0 : all[std::size_t(leaving)]), r * std::log1p(d / r)) / interest_;
+  double sensitivity(int j) const { return rest_.sensitivity(j) / interest_; }
+  /// No less than gain(j) for a leaving member of sensitivity `leaving`: Φ is concave, and no swap gains more than
+  /// adding alone.
+  double most(int j, double leaving) const {
+    const double d = rest_.sensitivity_bounds()[std::size_t(j)], r = scenario_.blocks->rows();
+    return std::min(d / interest_ - leaving, r * std::log1p(d / r) / interest_);
   }
   double gain(int j) { return rest_.gain(j) / interest_; }
   /// ln e_v with j in the place of k, from scratch.
@@ -90,6 +90,7 @@ class MixedState : public DesignState {
         combination_(aim, weights_of(scenarios), whole),
         aim_(aim),
         now_(scenarios.size()),
+        leaving_(scenarios.size()),
         then_(scenarios.size()) {
     for (const Scenario& scenario : scenarios) shares_.push_back(std::make_unique<Share>(scenario));
     refresh();
@@ -147,14 +148,14 @@ class MixedState : public DesignState {
   }
 
   /// Φ at most after j enters, less Φ now; then_ holds the parts.
-  double most(int j, int leaving, double now) {
-    for (std::size_t v = 0; v < shares_.size(); ++v) then_[v] = now_[v] + shares_[v]->most(j, leaving);
+  double most(int j, double now) {
+    for (std::size_t v = 0; v < shares_.size(); ++v) then_[v] = now_[v] + shares_[v]->most(j, leaving_[v]);
     return combination_.of(then_) - now;
   }
 
   /// Exact gain, or what is no more than `least` as soon as that is certain.
-  double gain(int j, int leaving, double now, std::size_t first, double least) {
-    double gain = most(j, leaving, now);
+  double gain(int j, double now, std::size_t first, double least) {
+    double gain = most(j, now);
     for (std::size_t i = 0; i < shares_.size() && gain > least; ++i) {
       const std::size_t v = i == 0 ? first : i <= first ? i - 1 : i;
       const double exact = now_[v] + shares_[v]->gain(j);
@@ -166,12 +167,15 @@ class MixedState : public DesignState {
   }
 
   Swap best_of(int leaving, double min_gain) {
-    for (std::size_t v = 0; v < shares_.size(); ++v) now_[v] = shares_[v]->reference();
+    for (std::size_t v = 0; v < shares_.size(); ++v) {
+      now_[v] = shares_[v]->reference();
+      leaving_[v] = leaving < 0 ? 0.0 : shares_[v]->sensitivity(leaving);
+    }
     const double now = combination_.of(now_);
     queue_.clear();
     for (int j = 0; j < int(blocks().count()); ++j) {
       if (blocked()[std::size_t(j)] != 0) continue;
-      const double bound = most(j, leaving, now);
+      const double bound = most(j, now);
       if (bound > min_gain) queue_.add(bound, j);
     }
     Swap best{-1, min_gain};
@@ -183,7 +187,7 @@ class MixedState : public DesignState {
     while (!queue_.empty()) {
       const auto [bound, j] = queue_.next();
       if (bound <= best.gain) break;
-      const double found = gain(j, leaving, now, first, best.gain);
+      const double found = gain(j, now, first, best.gain);
       if (found > best.gain) best = {j, found};
     }
     return best.enter < 0 ? Swap{} : best;
@@ -192,7 +196,7 @@ class MixedState : public DesignState {
   mutable Combination combination_;
   RobustAim aim_;
   std::vector<std::unique_ptr<Share>> shares_;
-  std::vector<double> now_;
+  std::vector<double> now_, leaving_;  ///< ln e_v of each share, and its sensitivity to the leaving member
   mutable std::vector<double> then_;
   ByBound queue_;
 };

@@ -45,9 +45,6 @@ std::vector<double> all_results(const Kernels& kernels, int rows, int columns) {
   std::vector<double> products(33 * 33, 0.0);
   kernels.gram(blocks.data(), 33, stride, products.data());
   all.insert(all.end(), products.begin(), products.end());
-  for (const double least : {0.0, 1.0, 5.0, 25.0})
-    all.push_back(double(kernels.next_between(blocks.data(), 0, 33, rows, stride, y.data(), 3, 2, d.data(),
-                                              blocked.data(), 0.1, least)));
   BlockArray divided = random_blocks(1, rows, columns, 3);
   std::vector<double> above(std::size_t(columns * stride), 0.0), diagonal;
   for (int j = 0; j < columns; ++j) {
@@ -99,24 +96,6 @@ TEST(Kernels, GramIsTheProductWithTheTransposedInItsLowerTriangle) {
     const Eigen::MatrixXd expected = blocks.all() * blocks.all().transpose();
     for (int i = 0; i < rows; ++i)
       for (int j = 0; j <= i; ++j) EXPECT_NEAR(H(i, j), expected(i, j), 1e-13);
-  }
-}
-
-TEST(Kernels, NextBetweenStopsAtTheFirstBlockThatIsLargeEnough) {
-  const BlockArray blocks = random_blocks(40, 3, 11, 7), y = random_blocks(1, 5, 11, 9);
-  const std::vector<double> d(40, 0.5);
-  std::vector<unsigned char> blocked(40, 0);
-  blocked[3] = 1;
-  const Eigen::MatrixXd plus = y.all().topRows(3).transpose(), minus = y.all().bottomRows(2).transpose();
-  for (const double least : {-2.0, 0.0, 1.0, 3.0, 10.0, 1e9}) {
-    std::size_t expected = 0;
-    for (; expected < 40; ++expected)
-      if (const auto J = blocks.block(expected);
-          blocked[expected] == 0 && 0.5 + (J * plus).squaredNorm() - (J * minus).squaredNorm() > least)
-        break;
-    EXPECT_EQ(kernels().next_between(blocks.data(), 0, 40, 3, blocks.stride(), y.data(), 3, 2, d.data(), blocked.data(),
-                                     0.1, least),
-              expected);
   }
 }
 

@@ -7,6 +7,8 @@
 
 namespace posewright {
 
+struct SingleMatrix;
+
 /// Exact gains of log det of the interest information (Schur complement) when one member leaves and a candidate enters,
 /// from a fresh factor of what remains: with M₋ = M − J_kᵀJ_k = L Lᵀ, nuisance columns first, and Z = J_j L⁻ᵀ,
 ///   ln det S(M₋ + J_jᵀJ_j) = ln det S(M₋) + ln det(I + Z Zᵀ) − ln det(I + Z_n Z_nᵀ),
@@ -24,8 +26,10 @@ class LeaveOneOut {
   double value() const { return value_; }
   /// Variant with a ridge for a singular M: the reference of gains.
   double reference() const { return reference_; }
-  /// d of the interest information for every candidate, from a fresh factor of M; computed when it is first asked for.
-  const std::vector<double>& sensitivities() const;
+  /// d of the interest information for candidate j, from a fresh factor of M.
+  double sensitivity(int j) const;
+  /// d of every candidate at most, from single precision; computed when it is first asked for.
+  const std::vector<double>& sensitivity_bounds() const;
 
   /// Prepares gains for a leaving member. Where M or M₋ is singular a small ridge is added; while M is, it is in both
   /// sides of a gain, so that accepted swaps still rise monotonically.
@@ -41,6 +45,15 @@ class LeaveOneOut {
   double exact(int k, int j) const;
 
  private:
+  /// A matrix in single precision, and what rounding adds to its products with rows of length 1 (SingleMatrix).
+  struct SingleCopy {
+    std::vector<float> data;
+    int rows = 0, columns = 0;
+    double error = 0;
+    void set(const Eigen::MatrixXd& matrix);
+    SingleMatrix view(int leading) const;
+  };
+
   void factorise();
   void prepare_bound(int k, bool regular);
   void tile(const Eigen::MatrixXd& inverse_factor);
@@ -53,9 +66,11 @@ class LeaveOneOut {
   double value_ = 0.0;
   double reference_ = 0.0;  ///< value_, or that of M plus ridge where M is singular
   double without_ = 0.0;
-  int leaving_ = -1;
-  std::vector<double> half_;  ///< rows: M⁻¹J_kᵀ(I − D_k)^{−T/2}, then the same of the nuisance columns; empty: no bound
-  std::vector<double> t_, scratch_;
+  double leaving_sensitivity_ = 0.0;  ///< d of the member left out; 0 for nobody
+  bool has_bound_ = false;
+  SingleCopy half_, nuisance_half_;         ///< M⁻¹J_kᵀ(I − D_k)^{−T/2}, and the same of the nuisance columns
+  std::vector<double> t_, scratch_, size_;  ///< size_: ‖J‖ of each candidate
+  mutable std::vector<float> single_scratch_;
   mutable std::vector<double> d_;
   mutable bool d_is_of_now_ = false;
   std::vector<int> tile_rows_;

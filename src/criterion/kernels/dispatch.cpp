@@ -1,3 +1,4 @@
+#include "bounds.hpp"
 #include "kernels.hpp"
 #include "posewright/support/instruction_set.hpp"
 
@@ -17,6 +18,14 @@ const Kernels& choose() {
 const Kernels& kernels() {
   static const Kernels& chosen = choose();
   return chosen;
+}
+
+const BoundKernels& bound_kernels() {
+#if defined(__x86_64__)
+  if (&kernels() == &kernels_avx512) return bounds_avx512;
+  if (&kernels() == &kernels_avx2) return bounds_avx2;
+#endif
+  return bounds_sse2;
 }
 
 }  // namespace posewright

@@ -32,10 +32,6 @@ struct Kernels {
   std::size_t (*next_block)(const double* x, std::size_t first, std::size_t n, int rows, int stride, const double* y,
                             int vectors, const double* d, const unsigned char* blocked, double least_d,
                             double least_sum);
-  /// Variant with subtracted squares: d[j] + Σ_rows (Σ_{l < plus} − Σ_{plus ≤ l < plus + minus}) (x·y_l)².
-  std::size_t (*next_between)(const double* x, std::size_t first, std::size_t n, int rows, int stride, const double* y,
-                              int plus, int minus, const double* d, const unsigned char* blocked, double least_d,
-                              double least_sum);
   /// Lower triangle (by whole tiles) of h = X Xᵀ, n × n column-major; rows of x are `length` doubles, a multiple of 8.
   void (*gram)(const double* x, std::size_t n, int length, double* h);
   /// out[o][i][x] = Σ_k m[i·columns + k] in[o][k][x], x < stride, for o < outer: one axis of a tensor times a matrix.

@@ -211,59 +211,6 @@ std::size_t next_block(const double* x, std::size_t first, std::size_t n, int ro
   return n;
 }
 
-/// Σ (x_i·y_l)² of `Rows` rows and `Vectors` vectors, each loaded once for all of the others.
-template <int Rows, int Vectors>
-inline double squared_products(const double* __restrict x, int stride, const double* __restrict y) {
-  Lanes sum[Rows][Vectors] = {};
-  for (int c = 0; c < stride; c += 4) {
-    Lanes right[Vectors];
-    for (int l = 0; l < Vectors; ++l) right[l] = *reinterpret_cast<const Lanes*>(y + l * stride + c);
-    for (int i = 0; i < Rows; ++i) {
-      const Lanes left = *reinterpret_cast<const Lanes*>(x + i * stride + c);
-      for (int l = 0; l < Vectors; ++l) sum[i][l] += left * right[l];
-    }
-  }
-  double total = 0;
-  for (int i = 0; i < Rows; ++i)
-    for (int l = 0; l < Vectors; ++l) {
-      const double product = (sum[i][l][0] + sum[i][l][1]) + (sum[i][l][2] + sum[i][l][3]);
-      total += product * product;
-    }
-  return total;
-}
-
-/// Σ_l (x_i·y_l)² of `Rows` rows.
-template <int Rows>
-inline double projected_rows(const double* x, int stride, const double* y, int vectors) {
-  double sum = 0;
-  int l = 0;
-  for (; l + 2 < vectors; l += 3) sum += squared_products<Rows, 3>(x, stride, y + l * stride);
-  for (; l < vectors; ++l) sum += squared_products<Rows, 1>(x, stride, y + l * stride);
-  return sum;
-}
-
-/// Σ_rows Σ_l (x·y_l)².
-inline double projected_squares(const double* x, int rows, int stride, const double* y, int vectors) {
-  double sum = 0;
-  int i = 0;
-  for (; i + 2 < rows; i += 3) sum += projected_rows<3>(x + i * stride, stride, y, vectors);
-  for (; i < rows; ++i) sum += projected_rows<1>(x + i * stride, stride, y, vectors);
-  return sum;
-}
-
-std::size_t next_between(const double* x, std::size_t first, std::size_t n, int rows, int stride, const double* y,
-                         int plus, int minus, const double* d, const unsigned char* blocked, double least_d,
-                         double least_sum) {
-  for (std::size_t j = first; j < n; ++j) {
-    if (d[j] <= least_d || blocked[j] != 0) continue;
-    const double* row = x + j * static_cast<std::size_t>(rows * stride);
-    const double sum = d[j] + projected_squares(row, rows, stride, y, plus);
-    if (sum <= least_sum) continue;
-    if (sum - projected_squares(row, rows, stride, y + plus * stride, minus) > least_sum) return j;
-  }
-  return n;
-}
-
 /// Products of Rows rows from x with Columns rows from y, each row loaded once for all of them.
 template <int Rows, int Columns>
 inline void gram_tile(const double* __restrict x, const double* __restrict y, int length, std::size_t n, double* h) {
@@ -368,7 +315,7 @@ void divide_rows(double* x, int rows, int stride, const double* above, const dou
 
 }  // namespace
 
-const Kernels KERNELS_NAME = {subtract_squares, traces, determinant_ratio, cross,       scan_rows,   next_block,
-                              next_between,     gram,   combine_rows,      divide_rows, KERNELS_TEXT};
+const Kernels KERNELS_NAME = {subtract_squares, traces, determinant_ratio, cross,       scan_rows,
+                              next_block,       gram,   combine_rows,      divide_rows, KERNELS_TEXT};
 
 }  // namespace posewright

@@ -1,0 +1,3 @@
+#define BOUNDS_NAME bounds_avx2
+#define LANES 8
+#include "bounds.inl"

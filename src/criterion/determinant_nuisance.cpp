@@ -25,7 +25,8 @@ class NuisanceState : public DesignState {
     const std::vector<double>& d = rest_.sensitivity_bounds();
     Swap best{-1, -infinity};
     for (int j = 0; j < int(blocks().count()); ++j) {
-      if (blocked()[std::size_t(j)] != 0 || d[std::size_t(j)] <= best.gain) continue;
+      if (blocked()[std::size_t(j)] != 0 || d[std::size_t(j)] <= best.gain || rest_.gain_bound(j) <= best.gain)
+        continue;
       const double gain = rest_.gain(j);
       if (gain > best.gain) best = {j, gain};
     }
@@ -43,6 +44,7 @@ class NuisanceState : public DesignState {
     Swap best{-1, min_gain};
     // Of equal gains the first candidate's counts, in whatever order they are asked for.
     const auto ask = [&](std::size_t j) {
+      if (rest_.gain_bound(int(j)) < best.gain) return;
       const double gain = rest_.gain(int(j));
       const bool is_first = best.enter >= 0 && gain == best.gain && int(j) < best.enter;
       if (gain > best.gain || is_first) best = {int(j), gain};

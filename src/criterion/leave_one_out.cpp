@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "kernels/bounds.hpp"
-#include "kernels/kernels.hpp"
 #include "posewright/criterion/summed_information.hpp"
 #include "posewright/support/dense.hpp"
 #include "regular.hpp"
@@ -24,6 +23,12 @@ int round16(int x) { return (x + 15) / 16 * 16; }
 double interest_log_det(const Eigen::LLT<Eigen::MatrixXd>& factor, int nuisance) {
   const Eigen::Index interest = factor.rows() - nuisance;
   return 2 * factor.matrixLLT().diagonal().tail(interest).array().log().sum();
+}
+
+/// ln det(I + ZᵀZ).
+double log_det_with(const Eigen::MatrixXd& Z) {
+  const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(Z.cols(), Z.cols());
+  return 2 * Eigen::LLT<Eigen::MatrixXd>(one + Z.transpose() * Z).matrixLLT().diagonal().array().log().sum();
 }
 
 }  // namespace
@@ -108,7 +113,8 @@ void LeaveOneOut::leave(int k) {
   const bool regular = std::isfinite(value_) && is_regular(factor);
   if (!regular) factor.compute(rest + ridge * Eigen::MatrixXd::Identity(m, m));
   without_ = interest_log_det(factor, nuisance_);
-  tile(factor.matrixL().solve(Eigen::MatrixXd::Identity(m, m)));
+  rest_factor_ = factor.matrixL().solve(Eigen::MatrixXd::Identity(m, m));
+  tile();
   prepare_bound(k, regular);
 }
 
@@ -147,18 +153,24 @@ std::size_t LeaveOneOut::next(std::size_t first, double wanted, const std::vecto
                                       blocked.data(), least, least_sum, single_scratch_.data());
 }
 
-void LeaveOneOut::tile(const Eigen::MatrixXd& inverse_factor) {
+void LeaveOneOut::tile() {
   const int stride = 16 * tiles_;
-  for (int k = 0; k < int(inverse_factor.rows()); ++k)
-    for (int i = k; i < int(inverse_factor.rows()); ++i)
-      t_[std::size_t(k * stride + (i < nuisance_ ? i : padded_nuisance_ + i - nuisance_))] = inverse_factor(i, k);
+  for (int k = 0; k < int(rest_factor_.rows()); ++k)
+    for (int i = k; i < int(rest_factor_.rows()); ++i)
+      t_[std::size_t(k * stride + (i < nuisance_ ? i : padded_nuisance_ + i - nuisance_))] = rest_factor_(i, k);
 }
 
-double LeaveOneOut::gain(int j) {
+double LeaveOneOut::gain_bound(int j) const {
   const double ratio =
-      kernels().determinant_ratio(blocks_.row(std::size_t(j), 0), blocks_.rows(), blocks_.stride(), t_.data(),
-                                  16 * tiles_, tile_rows_.data(), tiles_, padded_nuisance_, scratch_.data());
-  return without_ + std::log(ratio) - reference_;
+      bound_kernels().determinant_ratio(blocks_.row(std::size_t(j), 0), blocks_.rows(), blocks_.stride(), t_.data(),
+                                        16 * tiles_, tile_rows_.data(), tiles_, padded_nuisance_, scratch_.data());
+  const double gain = without_ + std::log(ratio) - reference_;
+  return gain + rounding * (1 + std::abs(gain));
+}
+
+double LeaveOneOut::gain(int j) const {
+  const Eigen::MatrixXd Z = rest_factor_.triangularView<Eigen::Lower>() * blocks_.block(std::size_t(j)).transpose();
+  return without_ + log_det_with(Z) - log_det_with(Z.topRows(nuisance_)) - reference_;
 }
 
 double LeaveOneOut::exact(int k, int j) const {

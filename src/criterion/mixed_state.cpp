@@ -58,7 +58,8 @@ class Share {
     const double d = rest_.sensitivity_bounds()[std::size_t(j)], r = scenario_.blocks->rows();
     return std::min(d / interest_ - leaving, r * std::log1p(d / r) / interest_);
   }
-  double gain(int j) { return rest_.gain(j) / interest_; }
+  double gain(int j) const { return rest_.gain(j) / interest_; }
+  double gain_bound(int j) const { return rest_.gain_bound(j) / interest_; }
   /// ln e_v with j in the place of k, from scratch.
   double exact(int k, int j) const { return of(rest_.exact(k, j)); }
 
@@ -156,13 +157,14 @@ class MixedState : public DesignState {
   /// Exact gain, or what is no more than `least` as soon as that is certain.
   double gain(int j, double now, std::size_t first, double least) {
     double gain = most(j, now);
-    for (std::size_t i = 0; i < shares_.size() && gain > least; ++i) {
-      const std::size_t v = i == 0 ? first : i <= first ? i - 1 : i;
-      const double exact = now_[v] + shares_[v]->gain(j);
-      if (aim_.measure == RobustAim::Measure::mean) gain += combination_.supporting(then_)[v] * (exact - then_[v]);
-      then_[v] = exact;
-      if (aim_.measure != RobustAim::Measure::mean) gain = combination_.of(then_) - now;
-    }
+    for (const bool exact : {false, true})
+      for (std::size_t i = 0; i < shares_.size() && gain > least; ++i) {
+        const std::size_t v = i == 0 ? first : i <= first ? i - 1 : i;
+        const double own = now_[v] + (exact ? shares_[v]->gain(j) : shares_[v]->gain_bound(j));
+        if (aim_.measure == RobustAim::Measure::mean) gain += combination_.supporting(then_)[v] * (own - then_[v]);
+        then_[v] = own;
+        if (aim_.measure != RobustAim::Measure::mean) gain = combination_.of(then_) - now;
+      }
     return gain;
   }
 

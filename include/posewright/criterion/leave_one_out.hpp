@@ -35,7 +35,9 @@ class LeaveOneOut {
   /// sides of a gain, so that accepted swaps still rise monotonically.
   void leave(int k);
   /// Φ(after) − Φ(now) for candidate j in the place of the member left out.
-  double gain(int j);
+  double gain(int j) const;
+  /// No less than gain(j), in a fraction of its time.
+  double gain_bound(int j) const;
   /// Next candidate from `first` on whose gain may be more than `wanted`; the number of candidates if there is none.
   /// With what is left M₋ and A = I + Z_n Z_nᵀ ⪰ I: gain ≤ Φ(M₋) − Φ(M) + r ln(1 + d₋/r), d₋ = tr(Z Zᵀ) − tr(Z_n Z_nᵀ),
   /// which a change of rank r gives from the sensitivities d of M; Φ is concave, so gain ≤ d_j − d_k; and no swap gains
@@ -56,20 +58,21 @@ class LeaveOneOut {
 
   void factorise();
   void prepare_bound(int k, bool regular);
-  void tile(const Eigen::MatrixXd& inverse_factor);
+  void tile();
   Eigen::MatrixXd swapped(int leave, int enter) const;
 
   const BlockArray& blocks_;
   const Eigen::MatrixXd* prior_;  ///< null: none
   int nuisance_, padded_nuisance_, tiles_;
-  Eigen::MatrixXd information_, inverse_factor_;
+  Eigen::MatrixXd information_, inverse_factor_, rest_factor_;  ///< L⁻¹ of M, and of M₋ without who leaves
   double value_ = 0.0;
   double reference_ = 0.0;  ///< value_, or that of M plus ridge where M is singular
   double without_ = 0.0;
   double leaving_sensitivity_ = 0.0;  ///< d of the member left out; 0 for nobody
   bool has_bound_ = false;
-  SingleCopy half_, nuisance_half_;         ///< M⁻¹J_kᵀ(I − D_k)^{−T/2}, and the same of the nuisance columns
-  std::vector<double> t_, scratch_, size_;  ///< size_: ‖J‖ of each candidate
+  SingleCopy half_, nuisance_half_;  ///< M⁻¹J_kᵀ(I − D_k)^{−T/2}, and the same of the nuisance columns
+  std::vector<double> t_, size_;     ///< columns of rest_factor_ as the kernel takes them; ‖J‖ of each candidate
+  mutable std::vector<double> scratch_;
   mutable std::vector<float> single_scratch_;
   mutable std::vector<double> d_;
   mutable bool d_is_of_now_ = false;

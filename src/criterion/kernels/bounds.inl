@@ -80,8 +80,72 @@ std::size_t next_between(const double* x, std::size_t first, std::size_t n, int 
   return n;
 }
 
+typedef double Wide __attribute__((vector_size(4 * LANES), aligned(8)));
+constexpr int wide = LANES / 2;
+
+inline double dot(const double* __restrict x, const double* __restrict y, int length) {
+  Wide sum[2] = {};
+  for (int c = 0; c < length; c += 16)
+    for (int l = 0; l < 16; l += wide)
+      sum[l / wide % 2] += *reinterpret_cast<const Wide*>(x + c + l) * *reinterpret_cast<const Wide*>(y + c + l);
+  const Wide both = sum[0] + sum[1];
+  double total = 0;
+  for (int l = 0; l < wide; ++l) total += both[l];
+  return total;
+}
+
+/// Determinant of the symmetric positive definite r × r matrix in the lower triangle of a; overwrites it.
+inline double determinant(double* a, int r) {
+  double product = 1;
+  for (int k = 0; k < r; ++k) {
+    const double pivot = a[k * r + k], inverse = 1 / pivot;
+    product *= pivot;
+    for (int i = k + 1; i < r; ++i) {
+      const double factor = a[i * r + k] * inverse;
+      for (int j = k + 1; j <= i; ++j) a[i * r + j] -= factor * a[j * r + k];
+    }
+  }
+  return product;
+}
+
+/// One tile of Z = x T for `Rows` rows at once: each row of T is loaded once for all of them.
+template <int Rows>
+inline void rotate(const double* __restrict x, int stride, const double* __restrict t, int t_stride, int count,
+                   double* __restrict z) {
+  constexpr int parts = 16 / wide;
+  Wide sum[Rows][parts] = {};
+  for (int k = 0; k < count; ++k, t += t_stride)
+    for (int l = 0; l < parts; ++l) {
+      const Wide right = *reinterpret_cast<const Wide*>(t + wide * l);
+      for (int i = 0; i < Rows; ++i) sum[i][l] += x[i * stride + k] * right;
+    }
+  for (int i = 0; i < Rows; ++i)
+    for (int l = 0; l < parts; ++l) *reinterpret_cast<Wide*>(z + i * t_stride + wide * l) = sum[i][l];
+}
+
+double determinant_ratio(const double* x, int rows, int stride, const double* t, int t_stride, const int* tile_rows,
+                         int tiles, int nuisance, double* scratch) {
+  double* z = scratch;
+  double* own = z + rows * t_stride;
+  double* all = own + rows * rows;
+  for (int tile = 0; tile < tiles; ++tile) {
+    int i = 0;
+    for (; i + 2 < rows; i += 3)
+      rotate<3>(x + i * stride, stride, t + 16 * tile, t_stride, tile_rows[tile], z + i * t_stride + 16 * tile);
+    for (; i < rows; ++i)
+      rotate<1>(x + i * stride, stride, t + 16 * tile, t_stride, tile_rows[tile], z + i * t_stride + 16 * tile);
+  }
+  for (int i = 0; i < rows; ++i)
+    for (int j = 0; j <= i; ++j) {
+      const double leading = (i == j ? 1.0 : 0.0) + dot(z + i * t_stride, z + j * t_stride, nuisance);
+      own[i * rows + j] = leading;
+      all[i * rows + j] = leading + dot(z + i * t_stride + nuisance, z + j * t_stride + nuisance, t_stride - nuisance);
+    }
+  return determinant(all, rows) / (nuisance > 0 ? determinant(own, rows) : 1.0);
+}
+
 }  // namespace
 
-const BoundKernels BOUNDS_NAME = {traces, next_between};
+const BoundKernels BOUNDS_NAME = {traces, next_between, determinant_ratio};
 
 }  // namespace posewright

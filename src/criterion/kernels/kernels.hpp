@@ -15,11 +15,6 @@ struct Kernels {
   /// t_stride is a multiple of 16, entries beyond `columns` zero.
   void (*traces)(const double* x, std::size_t blocks, int rows, int stride, const double* t, int t_stride, int columns,
                  double* d);
-  /// det(I + Z Zᵀ) / det(I + Z_n Z_nᵀ) for one block, Z = x T, Z_n its leading `nuisance` columns. T row-major with
-  /// `tiles` column tiles of 16 (t_stride = 16·tiles), nuisance a multiple of 16; rows below tile_rows[i] of tile i are
-  /// zero. scratch holds rows·(t_stride + 2·rows) doubles.
-  double (*determinant_ratio)(const double* x, int rows, int stride, const double* t, int t_stride,
-                              const int* tile_rows, int tiles, int nuisance, double* scratch);
   /// out[i·vectors + l] = x_i·y_l for i < rows.
   void (*cross)(const double* x, int rows, int stride, const double* y, int vectors, double* out);
   /// Best partner for one leaving row (r = 1, determinant): gain = (1+d_j)(1−d_k) + (x_j·u)² − 1.

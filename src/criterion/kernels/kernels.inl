@@ -106,60 +106,6 @@ void traces(const double* x, std::size_t blocks, int rows, int stride, const dou
   }
 }
 
-/// Product of squared Cholesky pivots of the r × r matrix in the lower triangle of a; overwrites it.
-inline double determinant(double* a, int r) {
-  double product = 1;
-  for (int j = 0; j < r; ++j) {
-    double pivot = a[j * r + j];
-    for (int k = 0; k < j; ++k) pivot -= a[j * r + k] * a[j * r + k] * a[k * r + k];
-    product *= pivot;
-    a[j * r + j] = pivot;
-    for (int i = j + 1; i < r; ++i) {
-      double sum = a[i * r + j];
-      for (int k = 0; k < j; ++k) sum -= a[i * r + k] * a[j * r + k] * a[k * r + k];
-      a[i * r + j] = sum / pivot;
-    }
-  }
-  return product;
-}
-
-/// One tile of Z = x T for `Rows` rows at once: each row of T is loaded once for all of them.
-template <int Rows>
-inline void rotate(const double* __restrict x, int stride, const double* __restrict t, int t_stride, int count,
-                   double* __restrict z) {
-  Lanes sum[Rows][4] = {};
-  for (int k = 0; k < count; ++k, t += t_stride)
-    for (int i = 0; i < Rows; ++i) {
-      const double v = x[i * stride + k];
-      for (int l = 0; l < 4; ++l) sum[i][l] += v * *reinterpret_cast<const Lanes*>(t + 4 * l);
-    }
-  for (int i = 0; i < Rows; ++i)
-    for (int l = 0; l < 4; ++l) *reinterpret_cast<Lanes*>(z + i * t_stride + 4 * l) = sum[i][l];
-}
-
-double determinant_ratio(const double* x, int rows, int stride, const double* t, int t_stride, const int* tile_rows,
-                         int tiles, int nuisance, double* scratch) {
-  double* z = scratch;
-  double* own = z + rows * t_stride;
-  double* all = own + rows * rows;
-  for (int tile = 0; tile < tiles; ++tile) {
-    int i = 0;
-    for (; i + 2 < rows; i += 3)
-      rotate<3>(x + i * stride, stride, t + 16 * tile, t_stride, tile_rows[tile], z + i * t_stride + 16 * tile);
-    for (; i < rows; ++i)
-      rotate<1>(x + i * stride, stride, t + 16 * tile, t_stride, tile_rows[tile], z + i * t_stride + 16 * tile);
-  }
-  for (int i = 0; i < rows; ++i)
-    for (int j = 0; j <= i; ++j) {
-      const double unit = i == j ? 1.0 : 0.0;
-      const double leading = nuisance > 0 ? dot(z + i * t_stride, z + j * t_stride, nuisance) : 0.0;
-      own[i * rows + j] = unit + leading;
-      all[i * rows + j] =
-          unit + leading + dot(z + i * t_stride + nuisance, z + j * t_stride + nuisance, t_stride - nuisance);
-    }
-  return determinant(all, rows) / (nuisance > 0 ? determinant(own, rows) : 1.0);
-}
-
 void cross(const double* x, int rows, int stride, const double* y, int vectors, double* out) {
   for (int i = 0; i < rows; ++i) {
     int l = 0;
@@ -315,7 +261,7 @@ void divide_rows(double* x, int rows, int stride, const double* above, const dou
 
 }  // namespace
 
-const Kernels KERNELS_NAME = {subtract_squares, traces, determinant_ratio, cross,       scan_rows,
-                              next_block,       gram,   combine_rows,      divide_rows, KERNELS_TEXT};
+const Kernels KERNELS_NAME = {subtract_squares, traces,      cross,       scan_rows, next_block, gram,
+                              combine_rows,     divide_rows, KERNELS_TEXT};
 
 }  // namespace posewright

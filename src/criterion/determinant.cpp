@@ -38,14 +38,26 @@ class DeterminantState : public DesignState {
 
   double value() const override { return singular_ ? -infinity : inverse_.log_det(); }
 
-  double loss(int position) const override { return inverse_.trace(members()[std::size_t(position)]); }
+  double loss(int position) const override {
+    const int k = members()[std::size_t(position)];
+    if (!bounds_only_) return inverse_.trace(k);
+    std::vector<double> y;
+    Eigen::MatrixXd d(blocks().rows(), blocks().rows());
+    inverse_.own(k, y, d);
+    return d.trace();
+  }
 
   Swap best_addition() override {
     Swap best{-1, -infinity};
     const int n = static_cast<int>(blocks().count()), r = blocks().rows();
     double ratio = 0;
+    const auto may_be_best = [&](int j) { return power(1 + inverse_.trace(j) / r, r) > ratio; };
     for (int j = 0; j < n; ++j) {
-      if (blocked()[std::size_t(j)] != 0 || power(1 + inverse_.trace(j) / r, r) <= ratio) continue;
+      if (blocked()[std::size_t(j)] != 0 || !may_be_best(j)) continue;
+      if (bounds_only_) {
+        inverse_.measure(j);
+        if (!may_be_best(j)) continue;
+      }
       const double gain = gain_.addition(j);
       if (gain > best.gain) {
         best = {j, gain};
@@ -61,6 +73,7 @@ class DeterminantState : public DesignState {
     // Nothing has run since: an exchange asks once more after a pass without a swap.
     if (since_refresh_ == 0) return !singular_;
     since_refresh_ = 0;
+    bounds_only_ = false;
     gain_.forget();
     products_.forget();
     singular_ = !inverse_.refresh(members(), 0.0);
@@ -70,6 +83,7 @@ class DeterminantState : public DesignState {
 
  private:
   Swap do_best_swap(int position, double min_gain) override {
+    if (bounds_only_) refresh();
     const int k = members()[std::size_t(position)];
     return blocks().rows() == 1 ? best_row(position, k, min_gain) : best_block(k, min_gain);
   }
@@ -83,6 +97,9 @@ class DeterminantState : public DesignState {
   }
 
   bool change(int leave, int enter) {
+    // A design that grows asks for the best addition alone, and few candidates come near it (Minoux 1978).
+    if (leave < 0) return bounds_only_ = inverse_.add(enter);
+    if (bounds_only_) return false;
     if (!keeps_products_) return inverse_.change(leave, enter);
     if (!inverse_.change(leave, enter, &made_)) return false;
     products_.change(members(), made_);
@@ -135,6 +152,7 @@ class DeterminantState : public DesignState {
   std::vector<double> y_;
   int since_refresh_ = 1;
   bool has_prior_ = false, singular_ = false;
+  bool bounds_only_ = false;  ///< since the last refresh a member was added: d of the candidates are bounds
 };
 
 }  // namespace

@@ -28,7 +28,8 @@ InverseInformation::InverseInformation(const BlockArray& blocks, int columns, co
       v_(std::size_t(columns) * std::size_t(stride_)),
       d_(blocks.count()),
       y_(std::size_t(2 * rows_ * stride_)),
-      scratch_(std::size_t(2 * rows_ * stride_)) {}
+      scratch_(std::size_t(2 * rows_ * stride_)),
+      own_(rows_, rows_) {}
 
 bool InverseInformation::refresh(const std::vector<int>& members, double ridge) {
   Eigen::MatrixXd m = ridge * Eigen::MatrixXd::Identity(columns_, columns_);
@@ -70,12 +71,25 @@ void InverseInformation::own(int candidate, std::vector<double>& y, Eigen::Matri
 }
 
 void InverseInformation::measure(int candidate) {
-  Eigen::MatrixXd d(rows_, rows_);
-  own(candidate, scratch_, d);
-  d_[std::size_t(candidate)] = d.trace();
+  own(candidate, scratch_, own_);
+  d_[std::size_t(candidate)] = own_.trace();
 }
 
 bool InverseInformation::change(int leave, int enter, RankChange* made) {
+  if (!update(leave, enter)) return false;
+  if (made == nullptr) {
+    take_from_traces();
+  } else {
+    made->signs = sign_;
+    made->entering = entering_;
+    take_from_traces(*made);
+  }
+  return true;
+}
+
+bool InverseInformation::add(int candidate) { return update(-1, candidate); }
+
+bool InverseInformation::update(int leave, int enter) {
   // M' = M + Uᵀ S U with U = [J_enter; J_leave], S = diag(I, −I): V' = V − V Uᵀ K⁻¹ U V, K = S + U V Uᵀ.
   int size = 0;
   const int of[2] = {enter, leave};
@@ -99,33 +113,27 @@ bool InverseInformation::change(int leave, int enter, RankChange* made) {
   log_det_ += lambda.cwiseAbs().array().log().sum();
   const Eigen::MatrixXd scale = eigen.eigenvectors() * lambda.cwiseAbs().cwiseSqrt().cwiseInverse().asDiagonal();
   Eigen::Map<const BlockArray::RowMatrix> y(y_.data(), size, stride_);
-  const BlockArray::RowMatrix directions = scale.transpose() * y;
-  const Eigen::VectorXd sign = lambda.array().sign();
+  directions_ = scale.transpose() * y;
+  sign_ = lambda.array().sign();
+  entering_ = eigen.eigenvectors().row(0).transpose().cwiseProduct(lambda.cwiseAbs().cwiseSqrt());
   Eigen::Map<BlockArray::RowMatrix> v(v_.data(), columns_, stride_);
-  v.noalias() -= directions.leftCols(columns_).transpose() * sign.asDiagonal() * directions;
-  if (made == nullptr) {
-    take_from_traces(directions, sign);
-  } else {
-    made->signs = sign;
-    made->entering = eigen.eigenvectors().row(0).transpose().cwiseProduct(lambda.cwiseAbs().cwiseSqrt());
-    take_from_traces(directions, *made);
-  }
+  v.noalias() -= directions_.leftCols(columns_).transpose() * sign_.asDiagonal() * directions_;
   return true;
 }
 
-void InverseInformation::take_from_traces(const BlockArray::RowMatrix& directions, const Eigen::VectorXd& sign) {
+void InverseInformation::take_from_traces() {
   constexpr std::size_t chunk = 8192;
   parallel_for((blocks_.count() + chunk - 1) / chunk, threads_, [&](std::size_t c, int) {
     const std::size_t first = c * chunk, count = std::min(chunk, blocks_.count() - first);
-    kernels().subtract_squares(blocks_.row(first, 0), count, rows_, stride_, directions.data(), sign.data(),
-                               int(sign.size()), d_.data() + first);
+    kernels().subtract_squares(blocks_.row(first, 0), count, rows_, stride_, directions_.data(), sign_.data(),
+                               int(sign_.size()), d_.data() + first);
   });
 }
 
-void InverseInformation::take_from_traces(const BlockArray::RowMatrix& directions, RankChange& made) {
+void InverseInformation::take_from_traces(RankChange& made) {
   const auto n = Eigen::Index(blocks_.count());
-  products_.resize(n, directions.rows());
-  kernels().cross(blocks_.data(), int(n), stride_, directions.data(), int(directions.rows()), products_.data());
+  products_.resize(n, directions_.rows());
+  kernels().cross(blocks_.data(), int(n), stride_, directions_.data(), int(directions_.rows()), products_.data());
   made.terms = products_;
   for (Eigen::Index l = 0; l < products_.cols(); ++l)
     for (Eigen::Index j = 0; j < n; ++j) d_[std::size_t(j)] -= made.signs[l] * made.terms(j, l) * made.terms(j, l);

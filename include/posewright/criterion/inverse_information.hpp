@@ -46,10 +46,14 @@ class InverseInformation {
   /// nothing has changed then and the caller refreshes instead.
   /// @param made  blocks of one row: receives the change; null: not needed
   bool change(int leave, int enter, RankChange* made = nullptr);
+  /// M ← M + JᵀJ of a candidate in V and log_det() alone: d of before bounds d of now from above, until refresh() or
+  /// measure().
+  bool add(int candidate);
 
  private:
-  void take_from_traces(const BlockArray::RowMatrix& directions, const Eigen::VectorXd& sign);
-  void take_from_traces(const BlockArray::RowMatrix& directions, RankChange& made);
+  bool update(int leave, int enter);
+  void take_from_traces();
+  void take_from_traces(RankChange& made);
 
   const BlockArray& blocks_;
   const Eigen::MatrixXd* prior_;  ///< null: none
@@ -57,8 +61,11 @@ class InverseInformation {
   std::vector<double> v_;  ///< columns × stride, row-major
   std::vector<double> d_;
   double log_det_ = 0.0;
-  std::vector<double> y_, scratch_;  ///< 2r × stride
-  BlockArray::RowMatrix products_;   ///< n × 2
+  std::vector<double> y_, scratch_;   ///< 2r × stride
+  Eigen::MatrixXd own_;               ///< r × r
+  BlockArray::RowMatrix products_;    ///< n × 2
+  BlockArray::RowMatrix directions_;  ///< of the last change: V ← V − Σ_l sign_l direction_lᵀ direction_l
+  Eigen::VectorXd sign_, entering_;
 };
 
 }  // namespace posewright

@@ -39,22 +39,18 @@ Eigen::MatrixXd information_of(const DesignTask& task, const BlockArray& blocks)
 /// Φ of the others and one block.
 class OnePose : public BlockObjective {
  public:
-  OnePose(const InformationFunction& function, Eigen::MatrixXd rest) : function_(function), rest_(std::move(rest)) {}
-  double value(const BlockArray::ConstMap& J) override {
-    sum_ = rest_;
-    sum_.noalias() += J.transpose() * J;
-    return function_.value(sum_);
-  }
+  OnePose(const InformationFunction& function, Eigen::MatrixXd rest)
+      : function_(function), rest_(std::move(rest)), value_(function.with_block(rest_)) {}
+  double value(const BlockArray::ConstMap& J) override { return value_->value(J); }
   const Eigen::MatrixXd& gradient(const BlockArray::ConstMap& J) override {
-    sum_ = rest_;
-    sum_.noalias() += J.transpose() * J;
-    gradient_ = function_.gradient(sum_);
+    gradient_ = function_.gradient(rest_ + J.transpose() * J);
     return gradient_;
   }
 
  private:
   const InformationFunction& function_;
-  Eigen::MatrixXd rest_, sum_, gradient_;
+  Eigen::MatrixXd rest_, gradient_;
+  std::unique_ptr<BlockFunction> value_;
 };
 
 /// True if pose i may go to q: far enough from the others, and within the limit of its choice.

@@ -116,6 +116,23 @@ class FunctionState : public DesignState {
 
 }  // namespace
 
+std::unique_ptr<BlockFunction> InformationFunction::with_block(const Eigen::MatrixXd& information) const {
+  class OfTheSum : public BlockFunction {
+   public:
+    OfTheSum(const InformationFunction& function, const Eigen::MatrixXd& rest) : function_(function), rest_(rest) {}
+    double value(const BlockArray::ConstMap& J) override {
+      sum_ = rest_;
+      sum_.noalias() += J.transpose() * J;
+      return function_.value(sum_);
+    }
+
+   private:
+    const InformationFunction& function_;
+    Eigen::MatrixXd rest_, sum_;
+  };
+  return std::make_unique<OfTheSum>(*this, information);
+}
+
 std::unique_ptr<Expansion> InformationFunction::expand(const Eigen::MatrixXd&) const {
   throw std::logic_error("this criterion has no expansion");
 }

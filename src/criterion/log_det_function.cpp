@@ -68,12 +68,50 @@ class LogDetExpansion : public Expansion {
   Eigen::MatrixXd inverse_;  // L⁻ᵀ
 };
 
+/// With M₀ = L Lᵀ and Z = L⁻¹ Jᵀ, nuisance rows first: ln det S(M₀) + ln det(I + ZᵀZ) − ln det(I + Z_nᵀ Z_n).
+class LogDetWithBlock : public BlockFunction {
+ public:
+  LogDetWithBlock(const Eigen::LLT<Eigen::MatrixXd>& factor, int nuisance, double value)
+      : inverse_(factor.matrixL().solve(Eigen::MatrixXd::Identity(factor.rows(), factor.rows()))),
+        nuisance_(nuisance),
+        value_(value) {}
+  double value(const BlockArray::ConstMap& J) override {
+    Z_.noalias() = inverse_ * J.transpose();
+    product_.noalias() = Z_.topRows(nuisance_).transpose() * Z_.topRows(nuisance_);
+    const double nuisance = log_det_with_one();
+    product_.noalias() += Z_.bottomRows(Z_.rows() - nuisance_).transpose() * Z_.bottomRows(Z_.rows() - nuisance_);
+    return value_ + log_det_with_one() - nuisance;
+  }
+
+ private:
+  /// ln det(I + product).
+  double log_det_with_one() {
+    sum_ = product_;
+    sum_.diagonal().array() += 1;
+    factor_.compute(sum_);
+    return 2 * factor_.matrixLLT().diagonal().array().log().sum();
+  }
+
+  Eigen::MatrixXd inverse_;
+  Eigen::Index nuisance_;
+  double value_;
+  Eigen::MatrixXd Z_, product_, sum_;
+  Eigen::LLT<Eigen::MatrixXd> factor_;
+};
+
 }  // namespace
 
 double LogDetFunction::value(const Eigen::MatrixXd& information) const {
   const Eigen::LLT<Eigen::MatrixXd> factor(information);
   if (!is_regular(factor)) return -std::numeric_limits<double>::infinity();
   return 2 * factor.matrixLLT().diagonal().tail(interest_).array().log().sum();
+}
+
+std::unique_ptr<BlockFunction> LogDetFunction::with_block(const Eigen::MatrixXd& information) const {
+  const Eigen::LLT<Eigen::MatrixXd> factor(information);
+  if (!is_regular(factor)) return InformationFunction::with_block(information);
+  const double value = 2 * factor.matrixLLT().diagonal().tail(interest_).array().log().sum();
+  return std::make_unique<LogDetWithBlock>(factor, nuisance_, value);
 }
 
 Eigen::MatrixXd LogDetFunction::gradient(const Eigen::MatrixXd& information) const {

@@ -439,14 +439,27 @@ bool SixLegs::enclose_lifted(const Frame<TaylorModel>& platform, std::span<const
   return std::any_of(done.begin(), done.end(), [](bool one) { return one; });
 }
 
+namespace {
+
+/// R ← R · (rotation about a coordinate axis): two columns, without products of what does not move.
+void rotate_about(int axis, const TaylorModel& angle, Eigen::Matrix<TaylorModel, 3, 3>& R) {
+  const TaylorModel c = cos(angle), s = sin(angle);
+  auto u = R.col((axis + 1) % 3), v = R.col((axis + 2) % 3);
+  for (int i = 0; i < 3; ++i) {
+    TaylorModel turned = c * u[i] + s * v[i];
+    v[i] = c * v[i] - s * u[i];
+    u[i] = std::move(turned);
+  }
+}
+
+}  // namespace
+
 bool SixLegs::do_enclose(std::span<const TaylorModel> q, std::span<const double> own, std::span<const int> selected,
                          Enclosed& out) const {
   out.X_BasePlatform = {};
   Frame<TaylorModel>& platform = out.X_BasePlatform;
   platform.p = X_BaseReference_.translation().cast<TaylorModel>() + Vector3<TaylorModel>(q[0], q[1], q[2]);
-  platform.then_rotate(Eigen::Vector3d::UnitZ(), q[5]);
-  platform.then_rotate(Eigen::Vector3d::UnitY(), q[4]);
-  platform.then_rotate(Eigen::Vector3d::UnitX(), q[3]);
+  for (const int axis : {2, 1, 0}) rotate_about(axis, q[std::size_t(3 + axis)], platform.R);
   platform.R = (platform.R * X_BaseReference_.linear().cast<TaylorModel>()).eval();
   out.allowed.clear();
   const bool lifted = spec_.actuation == LegActuation::slide && !own.empty() &&

@@ -87,6 +87,12 @@ std::size_t large_terms(const TaylorModel& f) {
   return count;
 }
 
+bool known_everywhere(const TaylorModel& f) {
+  for (std::size_t k = 0; k < boxes; ++k)
+    if (!f.known(k)) return false;
+  return true;
+}
+
 double clean(double radius) { return radius < infinity ? radius : infinity; }
 
 }  // namespace
@@ -279,6 +285,8 @@ TaylorModel scaled(const Values& factor, const Values& radius, const TaylorModel
 TaylorModel operator*(const TaylorModel& a, const TaylorModel& b) {
   if (a.terms() > b.terms()) return b * a;
   if (a.terms() == 1) {
+    // Matrices that move few coordinates are full of zeros.
+    if (a.is_zero() && known_everywhere(b)) return {};
     Values factor;
     std::copy_n(a.coefficients_.begin(), boxes, factor.begin());
     return scaled(factor, a.radius_, b);

@@ -200,6 +200,16 @@ TEST(TaylorModel, KernelsOfAllInstructionsComputeTheSameBits) {
 #endif
 }
 
+TEST(TaylorModel, ZeroTimesKnownIsZeroAndTimesUnknownIsUnknown) {
+  TaylorModel x = TaylorModel::variable(Monomials::of(2, 3), 0, 1.0, 2.0);
+  EXPECT_TRUE((TaylorModel(0.0) * x).is_zero());
+  EXPECT_TRUE((x * TaylorModel(0.0)).is_zero());
+  x.put_unknown(3);
+  const TaylorModel product = TaylorModel(0.0) * x;
+  EXPECT_TRUE(product.known(2));
+  EXPECT_FALSE(product.known(3));
+}
+
 TEST(TaylorModel, IsAsNearAsItsDegree) {
   // Halving the box makes the rest of a series of degree D smaller by 2^(D + 1).
   for (int degree = 2; degree <= 4; ++degree) {

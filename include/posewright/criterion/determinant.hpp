@@ -20,6 +20,7 @@ class LogDetFunction : public InformationFunction {
   bool concave() const override { return true; }
   double degree() const override { return interest_; }
   std::unique_ptr<Expansion> expand(const Eigen::MatrixXd& information) const override;
+  std::unique_ptr<BlockFunction> with_block(const Eigen::MatrixXd& information) const override;
 
  private:
   int nuisance_, interest_;

@@ -24,6 +24,14 @@ class Expansion {
   }
 };
 
+/// Φ(M₀ + JᵀJ) of one block J after the other.
+class BlockFunction {
+ public:
+  virtual ~BlockFunction() = default;
+  /// −∞ where the information is singular.
+  virtual double value(const BlockArray::ConstMap& J) = 0;
+};
+
 /// Φ as a function of the information matrix M alone (m × m, whitened coordinates).
 class InformationFunction {
  public:
@@ -39,6 +47,8 @@ class InformationFunction {
   virtual double degree() const { return 0.0; }
   /// Null if M is singular.
   virtual std::unique_ptr<Expansion> expand(const Eigen::MatrixXd& information) const;
+  /// This function of M₀ and one block more; may refer to this object.
+  virtual std::unique_ptr<BlockFunction> with_block(const Eigen::MatrixXd& information) const;
 };
 
 /// T upper triangular with T Tᵀ = F Fᵀ, F m × k.

@@ -8,6 +8,7 @@
 #include "posewright/lists/parameters_file.hpp"
 #include "posewright/model/variant_columns.hpp"
 #include "posewright/options/tables.hpp"
+#include "posewright/problem/design_keys.hpp"
 #include "posewright/report/report.hpp"
 #include "posewright/report/report_problem.hpp"
 #include "posewright/results/calibrated_dh_table.hpp"
@@ -145,8 +146,10 @@ Report report(const Shared& problem, const std::filesystem::path& plan, const py
   keywords.read(report_options(), options);
   const Limit limit = keywords.time_limit();
   keywords.finish();
+  Problem planned = problem->problem;
+  set_design(planned, edits_of_plan(plan));
   return watched(*problem, limit, keywords.progress, OnInterrupt::raise,
-                 [&](const Monitor& monitor) { return report_problem(problem->problem, plan, options, monitor); });
+                 [&](const Monitor& monitor) { return report_problem(planned, plan, options, monitor); });
 }
 
 void bind_classes(py::module_& m) {

@@ -5,7 +5,6 @@
 
 #include "posewright/lists/parameters_file.hpp"
 #include "posewright/model/apply_parameters.hpp"
-#include "posewright/problem/design_keys.hpp"
 #include "posewright/problem/read_problem.hpp"
 #include "posewright/tasks/route_problem.hpp"
 #include "session.hpp"
@@ -81,13 +80,9 @@ std::vector<std::string> variants_of(const po::variables_map& values) {
 }
 
 Problem given_problem(const std::filesystem::path& file, const po::variables_map& values, KeyEdits changed) {
-  const auto is_of_design = [](const KeyEdit& edit) { return edit.key == "design" || edit.key.starts_with("design."); };
-  const KeyEdits edits = edits_of(values);
-  std::ranges::remove_copy_if(edits, std::back_inserter(changed), is_of_design);
+  std::ranges::move(edits_of(values), std::back_inserter(changed));
   Problem problem = read_problem(file, packages_of(values), changed);
   if (values.count("parameters") > 0) apply(problem, text_of(values, "parameters"), variants_of(values));
-  for (const KeyEdit& edit : edits)
-    if (is_of_design(edit)) set(problem, edit.key, edit.value, "--set " + edit.key);
   return problem;
 }
 

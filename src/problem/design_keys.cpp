@@ -349,11 +349,18 @@ void set(Problem& problem, const std::string& path, const std::string& value, co
   const DesignKey& key = design_key(path);
   const std::string no_file;
   const std::filesystem::path here;
-  problem.edits.push_back(said_by);
+  problem.changed.push_back({path, value, said_by});
   const bool flow = value.starts_with('{') || value.starts_with('[');
   const YAML::Node node = flow ? yaml::load_document(value, said_by) : YAML::Node(value);
   DesignReading reading{problem.design, problem.variants, here};
-  key.read(Value(node, -int(problem.edits.size()), said_by, no_file), reading);
+  key.read(Value(node, -int(problem.changed.size()), said_by, no_file), reading);
 }
+
+void set_design(Problem& problem, const KeyEdits& edits) {
+  for (const KeyEdit& edit : edits)
+    if (is_of_design(edit)) set(problem, edit.key, edit.value, "--set " + edit.key);
+}
+
+bool is_of_design(const KeyEdit& edit) { return edit.key == "design" || edit.key.starts_with("design."); }
 
 }  // namespace posewright

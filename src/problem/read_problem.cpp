@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "posewright/problem/design_keys.hpp"
 #include "posewright/support/file.hpp"
 #include "posewright/support/sha256.hpp"
 #include "posewright/support/text.hpp"
@@ -37,16 +38,17 @@ void require_unmodelled_variant(const Problem& problem) {
 
 bool is_below(const std::string& key, const std::string& other) { return key.starts_with(other + "."); }
 
-/// Each key once with its last value, at its first place: a command that repeats a key of its plan has the plan's
-/// problem. Where a key above or below stands between, both stay.
+/// Each key beside the design once with its last value, at its first place: a command that repeats a key of its plan
+/// has the plan's problem. Where a key above or below stands between, both stay.
 KeyEdits last_values(const KeyEdits& edits) {
   KeyEdits kept;
   for (const KeyEdit& edit : edits) {
+    if (is_of_design(edit)) continue;
     const auto last = std::find_if(kept.rbegin(), kept.rend(), [&](const KeyEdit& other) {
       return other.key == edit.key || is_below(other.key, edit.key) || is_below(edit.key, other.key);
     });
     if (last != kept.rend() && last->key == edit.key) last->value = edit.value;
-    else kept.push_back(edit);
+    else kept.push_back({edit.key, edit.value, "--set " + edit.key});
   }
   return kept;
 }
@@ -78,10 +80,9 @@ Problem parse_problem(const std::string& text, const fs::path& file, const Packa
   Problem problem;
   problem.file = file;
   std::string hashed = text;
-  for (const auto& [key, value] : changed) hashed += "\n--set " + key + "=" + value;
+  for (const KeyEdit& edit : changed) hashed += "\n" + edit.said_by + "=" + edit.value;
   problem.sha256 = sha256_hex(hashed);
   problem.changed = changed;
-  for (const KeyEdit& edit : changed) problem.edits.push_back("--set " + edit.key);
   const yaml::Value& robot = root.at("robot");
   problem.packages = packages;
   problem.robot = read_robot(robot, file, packages);
@@ -96,6 +97,7 @@ Problem parse_problem(const std::string& text, const fs::path& file, const Packa
     robot.fail("with poses alone has no limits", "workspace: pose: {x: [0.3, 0.7], …, roll: [150 deg, 210 deg], …}");
   if (const yaml::Value* design = root.find("design"))
     problem.design = read_design(*design, problem.variants, file.parent_path());
+  set_design(problem, stated);
   return problem;
 }
 

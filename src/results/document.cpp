@@ -1,13 +1,18 @@
 #include "document.hpp"
 
 #include "posewright/lists/parameters_file.hpp"
+#include "posewright/problem/design_keys.hpp"
 #include "posewright/version.hpp"
 #include "sight_json.hpp"
 
 namespace posewright {
 
 ProblemOrigin origin_of(const Problem& problem) {
-  return {problem.file.string(), problem.sha256, parameters_of(problem), problem.changed};
+  ProblemOrigin origin{problem.file.string(), problem.sha256, parameters_of(problem), problem.changed};
+  // A result has the poses of a list itself; the file may move.
+  std::erase_if(origin.changed,
+                [](const KeyEdit& edit) { return is_of_design(edit) && design_key(edit.key).lists_poses; });
+  return origin;
 }
 
 nlohmann::ordered_json begin_document(const char* schema, const Problem& problem) {

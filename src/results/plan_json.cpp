@@ -146,7 +146,7 @@ nlohmann::ordered_json tool_pose_json(const Eigen::Isometry3d& X) {
 nlohmann::ordered_json problem_json(const ProblemOrigin& problem) {
   const ParametersFile& parameters = problem.parameters;
   Json json = {{"file", problem.file}, {"sha256", problem.sha256}};
-  for (const auto& [key, value] : problem.changed) json["set"].push_back({{"key", key}, {"value", value}});
+  for (const KeyEdit& edit : problem.changed) json["set"].push_back({{"key", edit.key}, {"value", edit.value}});
   if (!parameters.file.empty())
     json["parameters"] = {{"file", parameters.file}, {"sha256", parameters.sha256}, {"variant", parameters.variant}};
   return json;

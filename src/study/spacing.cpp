@@ -81,9 +81,7 @@ Spacing usual_spacing(const std::vector<Coordinate>& coordinates, const Configur
   return {};
 }
 
-std::string distance_text(const std::vector<Coordinate>& coordinates, const PoseDistance& distance) {
-  const Spacing& spacing = distance.spacing;
-  const int digits = distance.usual ? 2 : 9;
+std::string distance_text(const std::vector<Coordinate>& coordinates, const Spacing& spacing) {
   std::string text;
   for (const char* unit : {"rad", "m"}) {
     double least = std::numeric_limits<double>::infinity(), most = 0;
@@ -96,8 +94,8 @@ std::string distance_text(const std::vector<Coordinate>& coordinates, const Pose
     if (most == 0) continue;
     const bool angle = unit == std::string("rad");
     const double shown = angle ? 180 / std::numbers::pi : 1000;
-    text += (text.empty() ? "" : " or ") + (least < most ? fmt::format("{:.{}g} to ", shown * least, digits) : "") +
-            fmt::format("{:.{}g} {}", shown * most, digits, angle ? "deg" : "mm");
+    text += (text.empty() ? "" : " or ") + (least < most ? fmt::format("{:.3g} to ", shown * least) : "") +
+            fmt::format("{:.3g} {}", shown * most, angle ? "deg" : "mm");
   }
   return text;
 }

@@ -7,7 +7,6 @@
 #include "posewright/model/elastic_chain.hpp"
 #include "posewright/problem/design_keys.hpp"
 #include "posewright/results/other_numbers_json.hpp"
-#include "posewright/study/pose_distance.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/json.hpp"
 #include "posewright/support/text_file.hpp"
@@ -19,15 +18,6 @@ using Json = nlohmann::json;
 
 [[noreturn]] void throw_no_plan(const std::filesystem::path& file) {
   throw InputError({file.string(), 0}, "is not a plan of a robot", "plan.json as posewright plan writes it");
-}
-
-/// A distance as plan.json has it ("5 deg or 10 mm") as a value of its key; empty for the default. Earlier plans did
-/// not mark it, but distances that differ from coordinate to coordinate ("2.9 to 5 deg") nobody can state.
-std::string distance_value(const std::string& text) {
-  if (text.empty() || text.ends_with(default_mark) || text.find(" to ") != std::string::npos) return {};
-  const std::size_t both = text.find(" or ");
-  if (both == std::string::npos) return text;
-  return "{angle: " + text.substr(0, both) + ", length: " + text.substr(both + 4) + "}";
 }
 
 void fill_design(WrittenPlan& plan, const Json& json) {
@@ -46,13 +36,8 @@ void fill_design(WrittenPlan& plan, const Json& json) {
   say("design.scaling", criterion.at("scaling").get<std::string>());
   say("design.candidates", std::to_string(json.at("statistics").at("candidates_feasible").get<long>()));
   plan.seed = json.at("seed").get<std::uint64_t>();
-  if (const Json& certificate = json.at("certificate").at("candidates"); certificate.is_object()) {
+  if (const Json& certificate = json.at("certificate").at("candidates"); certificate.is_object())
     say("design.repeats", certificate.at("repeats").get<std::string>());
-    if (const auto distance = certificate.find("minimum_distance");
-        distance != certificate.end() && distance->is_string())
-      if (const std::string value = distance_value(distance->get<std::string>()); !value.empty())
-        say("design.minimum_distance", value);
-  }
 }
 
 void fill_parameters(WrittenPlan& plan, const Json& json) {

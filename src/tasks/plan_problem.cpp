@@ -92,14 +92,12 @@ class PlanSearch {
   PlanSearch(Setup setup, const Monitor& monitor)
       : problem_(*setup.problem), monitor_(monitor), study_(prepared(std::move(setup), monitor)), notes_(study_.notes) {
     if (study_.distance.kept)
-      minimum_distance_ = distance_text(study_.first().workspace->coordinates(), study_.distance);
-    if (study_.distance.usual) {
+      minimum_distance_ = distance_text(study_.first().workspace->coordinates(), study_.distance.spacing);
+    if (study_.distance.usual)
       notes_.push_back(
           fmt::format("Poses are kept apart: two differ by at least {} in one coordinate (the default; "
                       "minimum_distance changes it).",
                       minimum_distance_));
-      minimum_distance_ += default_mark;
-    }
     if (!study_.why_criterion.empty()) notes_.push_back(study_.why_criterion);
   }
 

@@ -38,5 +38,10 @@ const DesignKey& design_key(const std::string& path);
 /// the working directory. Later messages about the value name `said_by` ("--poses") in place of file and line. Throws
 /// InputError as the reader does, also for a path that is none.
 void set(Problem& problem, const std::string& path, const std::string& value, const std::string& said_by);
+/// set() of the edits that are keys of the design, in their order; the others are for read_problem().
+void set_design(Problem& problem, const KeyEdits& edits);
+
+/// Whether the key is one of the block `design`.
+bool is_of_design(const KeyEdit& edit);
 
 }  // namespace posewright

@@ -76,16 +76,14 @@ struct WorkspaceSpec {
 /// Source of a problem: its file, places of values in it, folders of packages.
 struct ProblemFile {
   std::filesystem::path file;
-  std::string sha256;  ///< of the file's bytes, then of `changed`, lower-case hexadecimal
-  KeyEdits changed;    ///< keys that have another value than in the file, beside the design's
+  std::string sha256;  ///< of the file's bytes, then of `changed` beside the design, lower-case hexadecimal
+  KeyEdits changed;    ///< keys that have another value than in the file, with the names of their options
   /// Folders of package://NAME/… for URDF and meshes, besides those of find_package().
   Packages packages;
-  /// Names of the options that changed the problem, as set() (problem/design_keys.hpp) has them.
-  std::vector<std::string> edits;
 
-  /// Place of a value by its line; -1, -2, …: of the first, second, … edit.
+  /// Place of a value by its line; -1, -2, …: the option of the first, second, … changed key.
   SourcePlace at(int line) const {
-    return line < 0 ? SourcePlace{edits[std::size_t(-line) - 1]} : SourcePlace{file.string(), line};
+    return line < 0 ? SourcePlace{changed[std::size_t(-line) - 1].said_by} : SourcePlace{file.string(), line};
   }
 };
 

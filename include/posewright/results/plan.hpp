@@ -255,7 +255,7 @@ struct RobustPlan {
 struct ProblemOrigin {
   std::string file, sha256;     ///< of a plan from bare blocks: those of the blocks
   ParametersFile parameters{};  ///< no file: nominal ones
-  KeyEdits changed{};           ///< Problem::changed
+  KeyEdits changed{};           ///< Problem::changed without files of poses
 };
 ProblemOrigin origin_of(const Problem& problem);
 

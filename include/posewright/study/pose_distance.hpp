@@ -2,7 +2,6 @@
 
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "posewright/criterion/spacing.hpp"
@@ -47,11 +46,7 @@ struct PoseDistance {
 /// @param poses  wanted; none: not known yet
 PoseDistance pose_distance(const Study& study, const Configurations& known, const std::optional<int>& poses);
 
-/// Behind the text of a distance that nobody stated, in plans.
-inline constexpr std::string_view default_mark = " (default)";
-
-/// The distances for messages: "5 deg", "2.5 to 5 deg or 12 mm". Those of the problem have all their digits, so that
-/// they can be read again; the default ones have two.
-std::string distance_text(const std::vector<Coordinate>& coordinates, const PoseDistance& distance);
+/// The distances for messages: "5 deg", "2.5 to 5 deg or 12 mm".
+std::string distance_text(const std::vector<Coordinate>& coordinates, const Spacing& spacing);
 
 }  // namespace posewright

@@ -9,6 +9,7 @@
 #include "continuous.hpp"
 #include "exchange.hpp"
 #include "extended_task.hpp"
+#include "posewright/support/bytes.hpp"
 #include "posewright/criterion/information_function.hpp"
 #include "posewright/support/parallel.hpp"
 #include "posewright/support/tasks.hpp"
@@ -98,7 +99,7 @@ class AutomaticSearch {
     group.first_always = true;
     run_tasks(
         group, [&](std::size_t i, int) { return bytes_of(search(i)); },
-        [&](std::size_t i, std::string_view bytes) { outcomes[i] = outcome_in(bytes); }, monitor);
+        [&](std::size_t i, std::string_view bytes) { outcomes[i] = value_in<Outcome>(bytes); }, monitor);
   }
 
   void record(const char* stage) {

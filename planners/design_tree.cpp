@@ -63,7 +63,7 @@ bool DesignTree::run() {
         [&](std::size_t k, int worker) {
           return bytes_of(split(*round[k], *relaxations_[std::size_t(worker)], best_));
         },
-        [&](std::size_t k, std::string_view bytes) { splits[k] = split_in(bytes); }, monitor_);
+        [&](std::size_t k, std::string_view bytes) { splits[k] = value_in<Split>(bytes); }, monitor_);
     merge(round, splits);
   }
   best_.bound = best_.value + gap_;
@@ -133,38 +133,6 @@ DesignTree::Split DesignTree::split(const Node& node, NodeRelaxation& relaxation
       result.children.push_back(std::move(child));
     }
   return result;
-}
-
-std::string DesignTree::bytes_of(const Split& split) {
-  ByteWriter bytes;
-  bytes.put(split.best.value);
-  bytes.put(split.best.members);
-  bytes.put(split.children.size());
-  for (const auto& child : split.children) {
-    bytes.put(child->box.least);
-    bytes.put(child->box.most);
-    bytes.put(child->relaxed.bound);
-    bytes.put(child->relaxed.numbers);
-    bytes.put(child->relaxed.branch);
-  }
-  return bytes.take();
-}
-
-DesignTree::Split DesignTree::split_in(std::string_view from) {
-  ByteReader bytes(from);
-  Split split;
-  bytes.get(split.best.value);
-  bytes.get(split.best.members);
-  for (auto count = bytes.get<std::size_t>(); count > 0; --count) {
-    auto child = std::make_unique<Node>();
-    bytes.get(child->box.least);
-    bytes.get(child->box.most);
-    bytes.get(child->relaxed.bound);
-    bytes.get(child->relaxed.numbers);
-    bytes.get(child->relaxed.branch);
-    split.children.push_back(std::move(child));
-  }
-  return split;
 }
 
 std::unique_ptr<DesignTree::Node> DesignTree::look_into(ChoiceBox box, std::vector<double> numbers,

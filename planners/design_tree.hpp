@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -29,16 +30,20 @@ class DesignTree {
   struct Node {
     ChoiceBox box;
     RelaxedBox relaxed;
+
+    static auto fields(auto& own) {
+      return std::tie(own.box.least, own.box.most, own.relaxed.bound, own.relaxed.numbers, own.relaxed.branch);
+    }
   };
   struct Split {
     std::vector<std::unique_ptr<Node>> children;
     Design best;
     bool left_out = false;  ///< by a stop: its node stays open
+
+    static auto fields(auto& own) { return std::tie(own.best.value, own.best.members, own.children); }
   };
 
   Split split(const Node& node, NodeRelaxation& relaxation, const Design& best) const;
-  static std::string bytes_of(const Split& split);
-  static Split split_in(std::string_view bytes);
   /// Null if nothing in the box is better than `best`.
   std::unique_ptr<Node> look_into(ChoiceBox box, std::vector<double> numbers, NodeRelaxation& relaxation,
                                   Design& best) const;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <limits>
+#include <tuple>
 #include <vector>
 
 #include "posewright/planning/design_task.hpp"
@@ -17,6 +18,8 @@ struct Outcome {
   double value = -std::numeric_limits<double>::infinity();
   long exchanges = 0;
   bool done = false;
+
+  static auto fields(auto& own) { return std::tie(own.members, own.value, own.exchanges, own.done); }
 };
 Outcome outcome_of(const DesignState& state, long exchanges);
 

@@ -102,25 +102,6 @@ void finish(const DesignTask& task, const ReducedTask& reduced, std::vector<Outc
 
 }  // namespace
 
-std::string bytes_of(const Outcome& outcome) {
-  ByteWriter bytes;
-  bytes.put(outcome.members);
-  bytes.put(outcome.value);
-  bytes.put(outcome.exchanges);
-  bytes.put(outcome.done);
-  return bytes.take();
-}
-
-Outcome outcome_in(std::string_view from) {
-  ByteReader bytes(from);
-  Outcome outcome;
-  bytes.get(outcome.members);
-  bytes.get(outcome.value);
-  bytes.get(outcome.exchanges);
-  bytes.get(outcome.done);
-  return outcome;
-}
-
 double products_of_a_pass(const DesignTask& task) {
   const BlockArray& blocks = *task.candidates.blocks;
   return double(task.poses) * double(blocks.count()) * blocks.rows() * blocks.columns();
@@ -192,11 +173,11 @@ Design run_restarts(const DesignTask& task, const PlannerOptions& options, const
     });
   } else {
     TaskGroup group{stage, std::size_t(starts), options.threads};
-    group.finished = [&](std::size_t, std::string_view bytes) { tell(outcome_in(bytes)); };
+    group.finished = [&](std::size_t, std::string_view bytes) { tell(value_in<Outcome>(bytes)); };
     group.first_always = true;
     run_tasks(
         group, [&](std::size_t i, int) { return bytes_of(carry_out(i)); },
-        [&](std::size_t i, std::string_view bytes) { best.add(i, outcome_in(bytes)); }, monitor);
+        [&](std::size_t i, std::string_view bytes) { best.add(i, value_in<Outcome>(bytes)); }, monitor);
   }
   Design design;
   design.restarts = best.count();

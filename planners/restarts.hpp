@@ -17,10 +17,6 @@ using Search = std::function<Outcome(const DesignTask&, std::size_t, Random&, co
 Design run_restarts(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor,
                     const std::string& stage, const Search& search);
 
-/// An outcome as the result of a task.
-std::string bytes_of(const Outcome& outcome);
-Outcome outcome_in(std::string_view bytes);
-
 /// Products of one pass over all candidates for every pose: the work that limits are counted in, not timed, so that a
 /// plan is the same on any machine.
 double products_of_a_pass(const DesignTask& task);

@@ -100,33 +100,6 @@ VirtualCalibration calibrate(const VirtualExperiment& experiment, int draw, cons
   return result;
 }
 
-std::string bytes_of(const VirtualCalibration& c) {
-  ByteWriter bytes;
-  bytes.put(c.end);
-  bytes.put(c.why);
-  bytes.put(c.error);
-  bytes.put(c.sigma);
-  bytes.put(c.tau);
-  for (const double value : {c.interval, c.chi_square, c.mean_square, c.largest}) bytes.put(value);
-  bytes.put(c.freedom);
-  bytes.put(c.lost);
-  return bytes.take();
-}
-
-VirtualCalibration calibration_in(std::string_view from) {
-  ByteReader bytes(from);
-  VirtualCalibration c;
-  bytes.get(c.end);
-  bytes.get(c.why);
-  bytes.get(c.error);
-  bytes.get(c.sigma);
-  bytes.get(c.tau);
-  for (double* value : {&c.interval, &c.chi_square, &c.mean_square, &c.largest}) bytes.get(*value);
-  bytes.get(c.freedom);
-  bytes.get(c.lost);
-  return c;
-}
-
 }  // namespace
 
 std::vector<VirtualCalibration> run_experiment(const VirtualExperiment& experiment, const Monitor& monitor) {
@@ -139,7 +112,7 @@ std::vector<VirtualCalibration> run_experiment(const VirtualExperiment& experime
   };
   run_tasks(
       group, [&](std::size_t draw, int) { return bytes_of(calibrate(experiment, int(draw), monitor)); },
-      [&](std::size_t draw, std::string_view bytes) { results[draw] = calibration_in(bytes); }, monitor);
+      [&](std::size_t draw, std::string_view bytes) { results[draw] = value_in<VirtualCalibration>(bytes); }, monitor);
   return results;
 }
 

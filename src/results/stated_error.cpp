@@ -54,41 +54,6 @@ nlohmann::ordered_json expected_error_json(const ExpectedError& e) {
   return json;
 }
 
-void put(ByteWriter& bytes, const std::optional<ExpectedError>& expected) {
-  bytes.put(expected.has_value());
-  if (!expected) return;
-  const ExpectedError& e = *expected;
-  for (const double value : {e.noise, e.length, e.by_noise, e.amplification, e.required.value_or(-1)}) bytes.put(value);
-  bytes.put(e.at);
-  bytes.put(e.size);
-  bytes.put(e.places);
-  bytes.put(e.base_out);
-  bytes.put(e.tool_out);
-  bytes.put(e.with.size());
-  for (const ExpectedError::WithEffect& one : e.with) {
-    bytes.put(one.size);
-    bytes.put(one.error);
-  }
-}
-
-std::optional<ExpectedError> expected_error_in(ByteReader& bytes) {
-  if (!bytes.get<bool>()) return std::nullopt;
-  ExpectedError e;
-  double required = -1;
-  for (double* value : {&e.noise, &e.length, &e.by_noise, &e.amplification, &required}) bytes.get(*value);
-  if (required >= 0) e.required = required;
-  bytes.get(e.at);
-  bytes.get(e.size);
-  bytes.get(e.places);
-  bytes.get(e.base_out);
-  bytes.get(e.tool_out);
-  for (auto left = bytes.get<std::size_t>(); left > 0; --left) {
-    const auto size = bytes.get<double>();
-    e.with.push_back({size, bytes.get<double>()});
-  }
-  return e;
-}
-
 std::string origin_text(const ExpectedError& e) {
   return e.size == Size::counted    ? "with the effect that the variant counts"
          : e.size == Size::measured ? "with the effect that calibration found"

@@ -33,22 +33,14 @@ class TreeSum {
   }
   std::string bytes() const {
     ByteWriter writer;
-    for (const auto& [node, value] : nodes_) {
-      writer.put(node.first);
-      writer.put(node.second);
-      writer.put(value);
-    }
+    for (const auto& entry : nodes_) writer.put(entry);
     return writer.take();
   }
   static TreeSum in(std::string_view bytes) {
     TreeSum sum;
     ByteReader reader(bytes);
     while (!reader.at_end()) {
-      Node node;
-      reader.get(node.first);
-      reader.get(node.second);
-      Eigen::VectorXd value;
-      reader.get(value);
+      auto [node, value] = reader.get<std::pair<Node, Eigen::VectorXd>>();
       sum.add(node, std::move(value));
     }
     return sum;
@@ -79,27 +71,6 @@ void keep_largest(std::vector<SpreadBlocks::Ranked>& ranked, std::size_t most) {
   const std::size_t kept = std::min(most, ranked.size());
   std::partial_sort(ranked.begin(), ranked.begin() + std::ptrdiff_t(kept), ranked.end(), before);
   ranked.resize(kept);
-}
-
-std::string bytes_of(const std::vector<SpreadBlocks::Ranked>& ranked) {
-  ByteWriter writer;
-  for (const auto& one : ranked) {
-    writer.put(one.value);
-    writer.put(one.candidate);
-  }
-  return writer.take();
-}
-
-std::vector<SpreadBlocks::Ranked> ranked_in(std::string_view bytes) {
-  std::vector<SpreadBlocks::Ranked> ranked;
-  ByteReader reader(bytes);
-  while (!reader.at_end()) {
-    SpreadBlocks::Ranked one;
-    reader.get(one.value);
-    reader.get(one.candidate);
-    ranked.push_back(one);
-  }
-  return ranked;
 }
 
 }  // namespace
@@ -135,13 +106,13 @@ std::vector<SpreadBlocks::Ranked> SpreadCandidates::largest(std::size_t most, do
   keep_largest(ranked, most);
   std::string bytes = bytes_of(ranked);
   workers_.combine(bytes, [most](std::string_view lower, std::string_view higher) {
-    std::vector<Ranked> both = ranked_in(lower);
-    const std::vector<Ranked> more = ranked_in(higher);
+    std::vector<Ranked> both = value_in<std::vector<Ranked>>(lower);
+    const std::vector<Ranked> more = value_in<std::vector<Ranked>>(higher);
     both.insert(both.end(), more.begin(), more.end());
     keep_largest(both, most);
     return bytes_of(both);
   });
-  return ranked_in(bytes);
+  return value_in<std::vector<Ranked>>(bytes);
 }
 
 bool SpreadCandidates::stopped() {

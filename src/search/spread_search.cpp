@@ -31,30 +31,16 @@ struct Found {
   std::int64_t candidate = -1;
   bool stop = false;
 
-  std::string bytes() const {
-    ByteWriter writer;
-    writer.put(gain);
-    writer.put(candidate);
-    writer.put(stop);
-    return writer.take();
-  }
-  static Found in(std::string_view bytes) {
-    Found found;
-    ByteReader reader(bytes);
-    reader.get(found.gain);
-    reader.get(found.candidate);
-    reader.get(found.stop);
-    return found;
-  }
+  static auto fields(auto& own) { return std::tie(own.gain, own.candidate, own.stop); }
 };
 
 std::string better(std::string_view lower, std::string_view higher) {
-  Found a = Found::in(lower), b = Found::in(higher);
+  auto a = value_in<Found>(lower), b = value_in<Found>(higher);
   const bool stop = a.stop || b.stop;
   // Lower ranks have lower candidates: of equal gains the first counts.
   if (a.candidate < 0 || (b.candidate >= 0 && b.gain > a.gain)) a = b;
   a.stop = stop;
-  return a.bytes();
+  return bytes_of(a);
 }
 
 void count(Traffic& traffic, const Traffic& before, const Traffic& after) {
@@ -136,13 +122,13 @@ class SpreadDesign {
   /// The best of what all processes found.
   Found agree(const Swap& own) {
     Found found{own.gain, own.enter < 0 ? -1 : candidates_.first() + own.enter, monitor_.should_stop()};
-    std::string bytes = found.bytes();
+    std::string bytes = bytes_of(found);
     const Traffic before = candidates_.workers().own_traffic();
     candidates_.workers().combine(bytes, better);
     count(traffic_.most_of_looks, before, candidates_.workers().own_traffic());
     ++traffic_.looks;
     traffic_.look_bytes = long(bytes.size());
-    found = Found::in(bytes);
+    found = value_in<Found>(bytes);
     stopped_ = stopped_ || found.stop;
     return found;
   }
@@ -244,25 +230,12 @@ std::vector<int> rounded(const ApproximateDesign& weights, const SpreadRequest& 
 
 /// Work of the busiest process, sent to all.
 void most(Traffic& traffic, Workers& workers) {
-  const auto bytes_of = [](const Traffic& one) {
-    ByteWriter writer;
-    writer.put(one.messages);
-    writer.put(one.bytes);
-    return writer.take();
-  };
-  const auto in = [](std::string_view bytes) {
-    Traffic one;
-    ByteReader reader(bytes);
-    reader.get(one.messages);
-    reader.get(one.bytes);
-    return one;
-  };
   std::string bytes = bytes_of(traffic);
   workers.combine(bytes, [&](std::string_view lower, std::string_view higher) {
-    const Traffic a = in(lower), b = in(higher);
-    return bytes_of({std::max(a.messages, b.messages), std::max(a.bytes, b.bytes)});
+    const auto a = value_in<Traffic>(lower), b = value_in<Traffic>(higher);
+    return bytes_of(Traffic{std::max(a.messages, b.messages), std::max(a.bytes, b.bytes)});
   });
-  traffic = in(bytes);
+  traffic = value_in<Traffic>(bytes);
 }
 
 /// The better local optimum of two starts; whitened blocks of its members in `chosen`.

@@ -91,28 +91,9 @@ Problem with_stations(Problem problem, const std::vector<StationSpec>& chosen) {
   return problem;
 }
 
-/// All but the stations, which whoever asks for it knows.
-std::string bytes_of(const StationRank& rank) {
-  ByteWriter bytes;
-  bytes.put(rank.why_not);
-  bytes.put(rank.main_rejection);
-  bytes.put(rank.parameters);
-  bytes.put(rank.stopped);
-  for (const double value : {rank.phi, rank.criterion_value, rank.feasible_share}) bytes.put(value);
-  put(bytes, rank.expected);
-  return bytes.take();
-}
-
-StationRank rank_in(std::string_view from, std::vector<StationSpec> stations) {
-  ByteReader bytes(from);
-  StationRank rank;
+StationRank rank_in(std::string_view bytes, std::vector<StationSpec> stations) {
+  auto rank = value_in<StationRank>(bytes);
   rank.stations = std::move(stations);
-  bytes.get(rank.why_not);
-  bytes.get(rank.main_rejection);
-  bytes.get(rank.parameters);
-  bytes.get(rank.stopped);
-  for (double* value : {&rank.phi, &rank.criterion_value, &rank.feasible_share}) bytes.get(*value);
-  rank.expected = expected_error_in(bytes);
   return rank;
 }
 

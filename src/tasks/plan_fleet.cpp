@@ -1,43 +1,10 @@
 #include "posewright/tasks/plan_fleet.hpp"
 
-#include "posewright/results/stated_error.hpp"
 #include "posewright/support/bytes.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/tasks.hpp"
 
 namespace posewright {
-namespace {
-
-std::string bytes_of(const FleetPlan& plan) {
-  ByteWriter bytes;
-  bytes.put(plan.why_not);
-  bytes.put(plan.variant);
-  bytes.put(plan.poses);
-  bytes.put(plan.efficiency.has_value());
-  for (const double value : {plan.log_det, plan.efficiency.value_or(0.0), plan.seconds}) bytes.put(value);
-  put(bytes, plan.expected);
-  bytes.put(plan.rendered);
-  return bytes.take();
-}
-
-FleetPlan fleet_plan_in(std::string_view from) {
-  ByteReader bytes(from);
-  FleetPlan plan;
-  bytes.get(plan.why_not);
-  bytes.get(plan.variant);
-  bytes.get(plan.poses);
-  const bool has_efficiency = bytes.get<bool>();
-  bytes.get(plan.log_det);
-  const auto efficiency = bytes.get<double>();
-  if (has_efficiency) plan.efficiency = efficiency;
-  bytes.get(plan.seconds);
-  plan.expected = expected_error_in(bytes);
-  bytes.get(plan.rendered);
-  return plan;
-}
-
-}  // namespace
-
 std::vector<FleetPlan> plan_fleet(const std::vector<Problem>& problems, const RunOptions& run,
                                   const std::function<std::string(const Plan&, std::size_t index)>& render,
                                   const Monitor& monitor) {
@@ -66,7 +33,7 @@ std::vector<FleetPlan> plan_fleet(const std::vector<Problem>& problems, const Ru
   // One at a time in each process: the parts of a plan keep its threads busy.
   run_tasks(
       {"plans", problems.size(), 1}, [&](std::size_t i, int) { return bytes_of(plan_one(i)); },
-      [&](std::size_t i, std::string_view bytes) { fleet[i] = fleet_plan_in(bytes); }, monitor);
+      [&](std::size_t i, std::string_view bytes) { fleet[i] = value_in<FleetPlan>(bytes); }, monitor);
   return fleet;
 }
 

@@ -4,16 +4,49 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <string>
+#include <string_view>
 
-#include "kept_draws.hpp"
 #include "posewright/model/whitening.hpp"
+#include "posewright/support/bytes.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/parallel.hpp"
 #include "posewright/support/result_store.hpp"
+#include "posewright/support/sha256.hpp"
 #include "sampler.hpp"
 
 namespace posewright {
 namespace {
+
+/// Name of a draw in a ResultStore, by all that decides it; empty: it is not known, or a draw takes no time.
+std::string name_of_draw(const Workspace& workspace, const SamplingOptions& options) {
+  if (workspace.identity().empty()) return "";
+  static const std::string build = build_identity();
+  if (build.empty()) return "";
+  ByteWriter all;
+  all.put(std::string_view("candidates 1"));
+  all.put(build);
+  all.put(workspace.identity());
+  all.put(std::uint64_t(options.count));
+  all.put(options.seed);
+  all.put(std::uint64_t(options.draws_per_candidate));
+  return sha256_hex(all.take());
+}
+
+/// A draw of bytes_of() (support); none where it cannot be a draw from this workspace.
+std::optional<Configurations> kept_configurations(std::string_view bytes, const Workspace& workspace) {
+  try {
+    ByteReader reader(bytes);
+    Configurations kept;
+    reader.get(kept);
+    const bool fits = kept.dimension == int(workspace.coordinates().size()) &&
+                      kept.values.size() == kept.count() * std::size_t(kept.dimension) && reader.at_end();
+    return fits ? std::optional(std::move(kept)) : std::nullopt;
+  } catch (const CannotDo&) {
+    return std::nullopt;
+  }
+}
 
 // What an instrument sees is proposed where less of what is drawn evenly is feasible.
 constexpr double scarce = 0.05;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "posewright/calibration/fit.hpp"
@@ -67,6 +68,11 @@ struct VirtualCalibration {
   int freedom = 0;
   double mean_square = 0.0, largest = 0.0;  ///< distance at the places: weighted mean square (m²), largest (m)
   std::vector<char> lost;                   ///< poses that the true robot or its instrument did not give
+
+  static auto fields(auto& own) {
+    return std::tie(own.end, own.why, own.error, own.sigma, own.interval, own.tau, own.chi_square, own.freedom,
+                    own.mean_square, own.largest, own.lost);
+  }
 };
 
 /// True parameters (correction of every parameter of the true model) and readings of one draw, poses without any

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <tuple>
 #include <vector>
 
 #include "posewright/planning/approximate_design.hpp"
@@ -15,6 +16,8 @@ class SpreadBlocks {
   struct Ranked {
     double value = 0.0;
     int candidate = -1;
+
+    static auto fields(auto& own) { return std::tie(own.value, own.candidate); }
   };
 
   virtual ~SpreadBlocks() = default;

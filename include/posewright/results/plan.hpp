@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -205,6 +206,8 @@ struct ExpectedError {
   struct WithEffect {
     double size = 0.0;   ///< 1σ along each axis, m
     double error = 0.0;  ///< m
+
+    static auto fields(auto& own) { return std::tie(own.size, own.error); }
   };
   double noise = 0.0;   ///< of one pose's readings as a displacement of the tip, 1σ along each axis, m
   double length = 0.0;  ///< over which the effect changes, rad
@@ -218,6 +221,10 @@ struct ExpectedError {
   std::optional<double> required{};         ///< by the user, m
 
   const WithEffect& usual() const { return with[with.size() / 2]; }
+  static auto fields(auto& own) {
+    return std::tie(own.noise, own.length, own.at, own.places, own.base_out, own.tool_out, own.by_noise,
+                    own.amplification, own.size, own.with, own.required);
+  }
 };
 
 /// What one instrument of a list gives a plan.

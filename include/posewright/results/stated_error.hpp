@@ -1,20 +1,14 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 
 #include "posewright/results/plan.hpp"
-#include "posewright/support/bytes.hpp"
 
 namespace posewright {
 
 /// Error to expect: SI, as in plan.json (docs/plan-file.md).
 nlohmann::ordered_json expected_error_json(const ExpectedError& expected);
-
-/// For results of tasks that go to a log or to another process.
-void put(ByteWriter& bytes, const std::optional<ExpectedError>& expected);
-std::optional<ExpectedError> expected_error_in(ByteReader& bytes);
 
 /// "with the effects that robots have".
 std::string origin_text(const ExpectedError& expected);

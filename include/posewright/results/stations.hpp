@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "posewright/problem/problem.hpp"
@@ -26,6 +27,12 @@ struct StationRank {
   double feasible_share = 0.0;  ///< of the configurations drawn
   std::string main_rejection;   ///< why most of the others are not feasible
   std::optional<ExpectedError> expected{};
+
+  /// All but the stations, which whoever asks for it knows.
+  static auto fields(auto& own) {
+    return std::tie(own.why_not, own.main_rejection, own.parameters, own.stopped, own.phi, own.criterion_value,
+                    own.feasible_share, own.expected);
+  }
 };
 
 /// Text for the terminal of ranked stations, best first, and the best as a problem file has it.

@@ -3,14 +3,24 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <cstring>
+#include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "posewright/support/error.hpp"
 
 namespace posewright {
+
+/// A struct that names the fields that go to other processes: `static auto fields(auto& own) { return std::tie(…); }`.
+template <class T>
+concept HasFields = requires(T& value) {
+  T::fields(value);
+};
 
 /// Values one after the other as the bytes of this kind of machine, for results that go to a log or to another process
 /// of the same program.
@@ -28,6 +38,23 @@ class ByteWriter {
   void put(const std::vector<T>& values) {
     put(std::uint64_t(values.size()));
     for (const T& value : values) put(value);
+  }
+  template <class T>
+  void put(const std::optional<T>& value) {
+    put(value.has_value());
+    if (value) put(*value);
+  }
+  template <class T>
+  void put(const std::unique_ptr<T>& value) {
+    put(*value);
+  }
+  template <class A, class B>
+  void put(const std::pair<A, B>& pair) {
+    put(pair.first), put(pair.second);
+  }
+  template <HasFields T>
+  void put(const T& value) {
+    std::apply([&](const auto&... fields) { (put(fields), ...); }, T::fields(value));
   }
   void put(const Eigen::VectorXd& values) {
     put(std::uint64_t(values.size()));
@@ -56,6 +83,23 @@ class ByteReader {
     values.resize(count);
     for (T& value : values) get(value);
   }
+  template <class T>
+  void get(std::optional<T>& value) {
+    if (get<bool>()) get(value.emplace());
+    else value.reset();
+  }
+  template <class T>
+  void get(std::unique_ptr<T>& value) {
+    get(*(value = std::make_unique<T>()));
+  }
+  template <class A, class B>
+  void get(std::pair<A, B>& pair) {
+    get(pair.first), get(pair.second);
+  }
+  template <HasFields T>
+  void get(T& value) {
+    std::apply([&](auto&... fields) { (get(fields), ...); }, T::fields(value));
+  }
   void get(Eigen::VectorXd& values) {
     const std::size_t count = size();
     if (count > rest_.size() / sizeof(double)) cut_short();
@@ -83,5 +127,19 @@ class ByteReader {
 
   std::string_view rest_;
 };
+
+/// The bytes of one value.
+template <class T>
+std::string bytes_of(const T& value) {
+  ByteWriter writer;
+  writer.put(value);
+  return writer.take();
+}
+
+/// The value of such bytes.
+template <class T>
+T value_in(std::string_view bytes) {
+  return ByteReader(bytes).get<T>();
+}
 
 }  // namespace posewright

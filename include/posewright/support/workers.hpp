@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 namespace posewright {
@@ -40,6 +41,8 @@ class Workers {
   /// Traffic between the processes so far.
   struct Traffic {
     long messages = 0, bytes = 0;
+
+    static auto fields(auto& own) { return std::tie(own.messages, own.bytes); }
   };
   /// Traffic of all processes, known to the first one.
   virtual Traffic traffic() const = 0;

@@ -3,6 +3,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "posewright/tasks/plan_problem.hpp"
@@ -19,6 +20,11 @@ struct FleetPlan {
   std::optional<ExpectedError> expected{};
   double seconds = 0.0;
   std::string rendered;  ///< result of `render`
+
+  static auto fields(auto& own) {
+    return std::tie(own.why_not, own.variant, own.poses, own.log_det, own.efficiency, own.expected, own.seconds,
+                    own.rendered);
+  }
 };
 
 /// Plans every problem by itself, each in one process with all its threads (run_tasks).

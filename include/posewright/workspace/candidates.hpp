@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -31,6 +32,8 @@ struct Configurations {
   std::vector<std::pair<std::string, long>> rejected;  ///< per reason, in the workspace's order
   std::vector<ListedRow> rows{};                       ///< one for each of a user's list; empty: they were drawn
 
+  /// Of a draw.
+  static auto fields(auto& own) { return std::tie(own.dimension, own.values, own.drawn, own.rejected); }
   std::size_t count() const { return dimension == 0 ? 0 : values.size() / std::size_t(dimension); }
   std::span<const double> operator[](std::size_t i) const {
     return {values.data() + i * std::size_t(dimension), std::size_t(dimension)};

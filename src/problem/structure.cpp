@@ -13,128 +13,35 @@
 namespace posewright {
 namespace {
 
+template <class T, class... Others>
+constexpr bool is_one_of = (std::is_same_v<T, Others> || ...);
+
 /// Number of members of a plain struct. A wrong number does not compile, so no member that is added later can be left
 /// out.
 template <class T>
-constexpr int members = 0;
-template <>
-constexpr int members<Placement> = 2;
-template <>
-constexpr int members<LoadCaseSpec> = 6;
-template <>
-constexpr int members<CompensatorSpec> = 8;
-template <>
-constexpr int members<ElastostaticSpec> = 8;
-template <>
-constexpr int members<ElastostaticSpec::Listed> = 3;
-template <>
-constexpr int members<JointEffectsSpec> = 7;
-template <>
-constexpr int members<TemperatureSpec> = 2;
-template <>
-constexpr int members<TipSpec> = 2;
-template <>
-constexpr int members<WaySpec> = 2;
-template <>
-constexpr int members<SerialArmSpec> = 16;
-template <>
-constexpr int members<LegSpec> = 5;
-template <>
-constexpr int members<SixLegsSpec> = 8;
-template <>
-constexpr int members<FiveBarSpec> = 7;
-template <>
-constexpr int members<FiveBarSpec::Leg> = 4;
-template <>
-constexpr int members<DeltaSpec> = 10;
-template <>
-constexpr int members<CompensatorGeometrySpec> = 6;
-template <>
-constexpr int members<GivenPosesSpec> = 2;
-template <>
-constexpr int members<TargetSpec> = 3;
-template <>
-constexpr int members<GaussianNoise> = 1;
-template <>
-constexpr int members<TrackerNoise> = 4;
-template <>
-constexpr int members<StationSpec> = 2;
-template <>
-constexpr int members<PoseMeasurement> = 6;
-template <>
-constexpr int members<PointsMeasurement> = 4;
-template <>
-constexpr int members<DistanceMeasurement> = 6;
-template <>
-constexpr int members<PlaneMeasurement> = 7;
-template <>
-constexpr int members<LineMeasurement> = 8;
-template <>
-constexpr int members<InclinationMeasurement> = 5;
-template <>
-constexpr int members<CameraMeasurement> = 14;
-template <>
-constexpr int members<JointsMeasurement> = 3;
-template <>
-constexpr int members<LineOfSightSpec> = 14;
-template <>
-constexpr int members<InstrumentList> = 1;
-template <>
-constexpr int members<TogetherMeasurement> = 1;
-template <>
-constexpr int members<Repeatability> = 3;
-template <>
-constexpr int members<MeasurementSpec> = 14;
-template <>
-constexpr int members<BoxShape> = 1;
-template <>
-constexpr int members<CylinderShape> = 2;
-template <>
-constexpr int members<SphereShape> = 1;
-template <>
-constexpr int members<HalfSpaceShape> = 1;
-template <>
-constexpr int members<MeshShape> = 2;
-template <>
-constexpr int members<TrianglesShape> = 2;
-template <>
-constexpr int members<BodySpec> = 6;
-template <>
-constexpr int members<ObstacleFileSpec> = 4;
-template <>
-constexpr int members<CollisionSpec> = 11;
-template <>
-constexpr int members<CollisionSpec::PairClearance> = 3;
-template <>
-constexpr int members<CoupledLimits> = 5;
-template <>
-constexpr int members<ToolBoxSpec> = 3;
-template <>
-constexpr int members<SingularitySpec> = 3;
-template <>
-constexpr int members<MotionSpec> = 11;
-template <>
-constexpr int members<StationChoiceSpec> = 3;
-template <>
-constexpr int members<Measured> = 2;
-template <>
-constexpr int members<ControllerSettings> = 11;
-template <>
-constexpr int members<CoordinateLimits> = 4;
-template <>
-constexpr int members<WorkspaceSpec> = 15;
-template <>
-constexpr int members<PatternValue> = 3;
-template <>
-constexpr int members<UnmodelledSpec> = 4;
-template <>
-constexpr int members<VariantSpec> = 10;
-template <>
-constexpr int members<ParameterEntry> = 4;
-template <>
-constexpr int members<CalibratedEffect> = 2;
-template <>
-constexpr int members<CalibratedParameters> = 6;
+constexpr int members =
+    is_one_of<T, GaussianNoise, InstrumentList, TogetherMeasurement, BoxShape, SphereShape, HalfSpaceShape> ? 1
+    : is_one_of<T, Placement, TemperatureSpec, TipSpec, WaySpec, GivenPosesSpec, StationSpec, CylinderShape, MeshShape,
+                TrianglesShape, Measured, CalibratedEffect>
+        ? 2
+    : is_one_of<T, ElastostaticSpec::Listed, TargetSpec, JointsMeasurement, Repeatability, CollisionSpec::PairClearance,
+                ToolBoxSpec, SingularitySpec, StationChoiceSpec, PatternValue>
+        ? 3
+    : is_one_of<T, FiveBarSpec::Leg, TrackerNoise, PointsMeasurement, ObstacleFileSpec, CoordinateLimits,
+                UnmodelledSpec, ParameterEntry>
+        ? 4
+    : is_one_of<T, LegSpec, InclinationMeasurement, CoupledLimits> ? 5
+    : is_one_of<T, LoadCaseSpec, CompensatorGeometrySpec, PoseMeasurement, DistanceMeasurement, BodySpec,
+                CalibratedParameters>
+        ? 6
+    : is_one_of<T, JointEffectsSpec, FiveBarSpec, PlaneMeasurement>                 ? 7
+    : is_one_of<T, CompensatorSpec, ElastostaticSpec, SixLegsSpec, LineMeasurement> ? 8
+    : is_one_of<T, DeltaSpec, VariantSpec>                                          ? 10
+    : is_one_of<T, CollisionSpec, MotionSpec, ControllerSettings>                   ? 11
+    : is_one_of<T, CameraMeasurement, LineOfSightSpec, MeasurementSpec>             ? 14
+    : is_one_of<T, WorkspaceSpec>                                                   ? 15
+    : is_one_of<T, SerialArmSpec>                                                   ? 16
+                                                                                    : 0;
 
 class Writer {
  public:

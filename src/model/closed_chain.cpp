@@ -32,27 +32,6 @@ bool is_singular(const Factor& factor) {
   return !(pivots.minCoeff() > singular_pivot * pivots.maxCoeff());
 }
 
-/// Work space of one thread, so that a loop over configurations does not allocate.
-struct Scratch {
-  ClosedChain::Loops loops, sensors;
-  std::vector<int> own;
-  std::vector<double> actuators;
-  Twists freedoms;
-  Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6> response;  ///< −B F_x⁻¹: twist of the platform per loop residual
-  Factor factor;
-};
-
-/// Fills s.response from s.loops and s.freedoms; false at a singularity.
-bool solve_response(Scratch& s) {
-  // A product of its own type: whether Eigen's temporary of any size meets the heap is up to the compiler.
-  const Square along_freedoms = s.loops.platform.lazyProduct(s.freedoms);
-  s.factor.compute(along_freedoms.transpose());
-  if (is_singular(s.factor)) return false;
-  const Eigen::Matrix<double, Eigen::Dynamic, 6, 0, 6, 6> freedoms = s.freedoms.transpose();
-  s.response = -s.factor.solve(freedoms).transpose();
-  return true;
-}
-
 /// f's derivatives by twists expressed in A become those by the same twists expressed in B.
 void slopes_to_frame(const Eigen::Isometry3d& X_AB, Eigen::Ref<Twists> slopes) {
   const Eigen::Matrix3d& R = X_AB.linear();
@@ -63,12 +42,41 @@ void slopes_to_frame(const Eigen::Isometry3d& X_AB, Eigen::Ref<Twists> slopes) {
   }
 }
 
-Scratch& scratch_of_this_thread() {
+}  // namespace
+
+/// Work space of one thread, so that a loop over configurations does not allocate.
+struct ClosedChain::Scratch {
+  Loops loops, sensors;
+  std::vector<int> own;
+  std::vector<double> actuators;
+  LoopState state;
+  Eigen::Isometry3d X_BasePlatform;
+  Twists freedoms;
+  Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6> response;  ///< −B F_x⁻¹: twist of the platform per loop residual
+  Factor factor;
+};
+
+ClosedChain::Scratch& ClosedChain::scratch_of_this_thread() {
   static thread_local Scratch scratch;
   return scratch;
 }
 
-}  // namespace
+bool ClosedChain::respond(const Point& at, std::span<const int> selected, Scratch& s) const {
+  const auto own = own_part(at.correction);
+  s.actuators.resize(actuators_.size());
+  if (!do_inverse_kinematics(at.q, own, s.actuators)) return false;
+  own_selection(selected, s.own);
+  s.state = {at.q, s.actuators, own, s.own};
+  s.X_BasePlatform = do_platform(at.q, s.freedoms);
+  loops(s.state, s.loops);
+  // A product of its own type: whether Eigen's temporary of any size meets the heap is up to the compiler.
+  const Square along_freedoms = s.loops.platform.lazyProduct(s.freedoms);
+  s.factor.compute(along_freedoms.transpose());
+  if (is_singular(s.factor)) return false;
+  const Eigen::Matrix<double, Eigen::Dynamic, 6, 0, 6, 6> freedoms = s.freedoms.transpose();
+  s.response = -s.factor.solve(freedoms).transpose();
+  return true;
+}
 
 ClosedChain::ClosedChain(const Placement& placement) : X_MeasureBase_(isometry(placement)) {
   append_displacement(parameters_, "base", X_MeasureBase_, 10e-3, 1 * degree);
@@ -113,31 +121,24 @@ std::vector<Polyline> ClosedChain::skeleton(std::span<const double> q) const {
   return lines;
 }
 
-void ClosedChain::loops(std::span<const double> q, std::span<const double> actuators, std::span<const double> own,
-                        std::span<const int> selected, Loops& out) const {
+void ClosedChain::loops(const LoopState& at, Loops& out) const {
   const auto d = Eigen::Index(coordinates_.size());
   out.value.setZero(d);
-  out.parameter.setZero(d, Eigen::Index(selected.size()));
+  out.parameter.setZero(d, Eigen::Index(at.selected.size()));
   out.platform.setZero(d, 6);
-  out.actuator.setZero(d, Eigen::Index(actuators.size()));
-  do_loops(q, actuators, own, selected, out);
+  out.actuator.setZero(d, Eigen::Index(at.actuators.size()));
+  do_loops(at, out);
 }
 
 bool ClosedChain::linearise(const Point& at, std::span<const int> selected, Eigen::Isometry3d& X_MeasureTip,
                             Twists& twists, Twists* reading_twists) const {
   Scratch& s = scratch_of_this_thread();
-  const auto own = own_part(at.correction);
-  s.actuators.resize(actuators_.size());
-  if (!do_inverse_kinematics(at.q, own, s.actuators)) return false;
-  own_selection(selected, s.own);
-  const Eigen::Isometry3d X_BasePlatform = do_platform(at.q, s.freedoms);
-  loops(at.q, s.actuators, own, s.own, s.loops);
-  if (!solve_response(s)) return false;
+  if (!respond(at, selected, s)) return false;
 
   Frame<double> frame = frame_of(X_MeasureBase_);
   const DisplacementAxes base = displace(frame, at.correction.empty() ? nullptr : at.correction.data());
   const Eigen::Isometry3d X_MeasureBase = isometry_of(frame);
-  frame.then(X_BasePlatform);
+  frame.then(s.X_BasePlatform);
   const std::size_t first_tool = std::size_t(first_own() + own_count_);
   const DisplacementAxes tool =
       displace(frame, at.correction.size() > first_tool ? at.correction.data() + first_tool : nullptr);
@@ -160,28 +161,19 @@ bool ClosedChain::linearise(const Point& at, std::span<const int> selected, Eige
   return true;
 }
 
-bool ClosedChain::do_loops_change(std::span<const double>, std::span<const double>, std::span<const double>,
-                                  std::span<const int>, const Loops&, Twist&, Eigen::VectorXd&) const {
-  return false;
-}
+bool ClosedChain::do_loops_change(const LoopState&, const Loops&, Twist&, Eigen::VectorXd&) const { return false; }
 
 bool ClosedChain::pull_back(const Point& at, std::span<const int> selected, const TipAdjoint& f,
                             std::span<double> gradient) const {
   Scratch& s = scratch_of_this_thread();
   static thread_local Loops slope;
   static thread_local Twists twists, readings;
-  const auto own = own_part(at.correction);
-  s.actuators.resize(actuators_.size());
-  if (!do_inverse_kinematics(at.q, own, s.actuators)) return false;
-  own_selection(selected, s.own);
-  const Eigen::Isometry3d X_BasePlatform = do_platform(at.q, s.freedoms);
-  loops(at.q, s.actuators, own, s.own, s.loops);
-  if (!solve_response(s)) return false;
+  if (!respond(at, selected, s)) return false;
 
   Frame<double> frame = frame_of(X_MeasureBase_);
   displace(frame, at.correction.empty() ? nullptr : at.correction.data());
   const Eigen::Isometry3d X_MeasureBase = isometry_of(frame);
-  frame.then(X_BasePlatform);
+  frame.then(s.X_BasePlatform);
   const int first_tool = first_own() + own_count_;
   const DisplacementAxes tool =
       displace(frame, at.correction.size() > std::size_t(first_tool) ? at.correction.data() + first_tool : nullptr);
@@ -212,7 +204,7 @@ bool ClosedChain::pull_back(const Point& at, std::span<const int> selected, cons
   if (readings.cols() > 0) slope.actuator.noalias() = s.response.transpose() * readings;
   else slope.actuator.setZero(s.loops.actuator.rows(), s.loops.actuator.cols());
   Eigen::VectorXd by_actuators = Eigen::VectorXd::Zero(s.loops.actuator.cols());
-  if (!do_loops_change(at.q, s.actuators, own, s.own, slope, by_platform, by_actuators))
+  if (!do_loops_change(s.state, slope, by_platform, by_actuators))
     return TipModel::pull_back(at, selected, f, gradient);
   // The loops stay closed: F_ρ dρ = −F_X B dq.
   by_platform -= s.loops.platform.transpose() * s.loops.actuator.transpose().partialPivLu().solve(by_actuators);
@@ -241,27 +233,20 @@ void ClosedChain::add_turned_freedoms(std::span<const double> q, const Eigen::Re
 bool ClosedChain::sensor_rows(const Point& at, std::span<const int> selected, Eigen::MatrixXd& rows,
                               Eigen::MatrixXd& reading_rows) const {
   Scratch& s = scratch_of_this_thread();
-  const auto own = own_part(at.correction);
-  s.actuators.resize(actuators_.size());
-  if (!do_inverse_kinematics(at.q, own, s.actuators)) return false;
-  own_selection(selected, s.own);
-  do_platform(at.q, s.freedoms);
-  loops(at.q, s.actuators, own, s.own, s.loops);
-  if (!solve_response(s)) return false;
-  read_sensors(at.q, s.actuators, own, s.own, s.sensors);
+  if (!respond(at, selected, s)) return false;
+  read_sensors(s.state, s.sensors);
   rows = s.sensors.parameter + s.sensors.platform * s.response * s.loops.parameter;
   reading_rows = s.sensors.actuator + s.sensors.platform * s.response * s.loops.actuator;
   return true;
 }
 
-void ClosedChain::read_sensors(std::span<const double> q, std::span<const double> actuators,
-                               std::span<const double> own, std::span<const int> selected, Loops& out) const {
+void ClosedChain::read_sensors(const LoopState& at, Loops& out) const {
   const auto count = Eigen::Index(sensors_.size());
   out.value.setZero(count);
-  out.parameter.setZero(count, Eigen::Index(selected.size()));
+  out.parameter.setZero(count, Eigen::Index(at.selected.size()));
   out.platform.setZero(count, 6);
   out.actuator.setZero(count, Eigen::Index(actuators_.size()));
-  do_sensors(q, actuators, own, selected, out);
+  do_sensors(at, out);
 }
 
 bool ClosedChain::sensor_values(const Point& at, Eigen::VectorXd& values) const {
@@ -269,7 +254,7 @@ bool ClosedChain::sensor_values(const Point& at, Eigen::VectorXd& values) const 
   const auto own = own_part(at.correction);
   s.actuators.resize(actuators_.size());
   if (!do_inverse_kinematics(at.q, own, s.actuators)) return false;
-  read_sensors(at.q, s.actuators, own, {}, s.sensors);
+  read_sensors({at.q, s.actuators, own, {}}, s.sensors);
   values = s.sensors.value;
   return true;
 }
@@ -281,8 +266,7 @@ bool ClosedChain::configuration_at(std::span<const double> actuators, const Poin
   return true;
 }
 
-void ClosedChain::do_sensors(std::span<const double>, std::span<const double>, std::span<const double>,
-                             std::span<const int>, Loops&) const {
+void ClosedChain::do_sensors(const LoopState&, Loops&) const {
   throw std::logic_error("this robot has no redundant joint sensors");
 }
 
@@ -292,7 +276,7 @@ std::optional<std::vector<double>> ClosedChain::forward_kinematics(std::span<con
   std::vector<double> q(start.q.begin(), start.q.end());
   for (int step = 0; step < newton_steps; ++step) {
     do_platform(q, s.freedoms);
-    loops(q, actuators, own_part(start.correction), {}, s.loops);
+    loops({q, actuators, own_part(start.correction), {}}, s.loops);
     s.factor.compute(s.loops.platform * s.freedoms);
     if (!s.loops.value.allFinite() || is_singular(s.factor)) return std::nullopt;
     const Eigen::VectorXd change = s.factor.solve(s.loops.value);

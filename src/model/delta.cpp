@@ -82,8 +82,8 @@ std::vector<Polyline> Delta::do_skeleton(std::span<const double> q, std::span<co
   return lines;
 }
 
-void Delta::do_loops(std::span<const double> q, std::span<const double> rho, std::span<const double> own,
-                     std::span<const int> selected, Loops& out) const {
+void Delta::do_loops(const LoopState& at, Loops& out) const {
+  const auto& [q, rho, own, selected] = at;
   for (int i = 0; i < delta_legs; ++i) {
     const DeltaLeg leg = corrected_leg(spec_, i, own);
     const double theta = rho[std::size_t(i)] + leg[4], cosine = std::cos(theta), sine = std::sin(theta);
@@ -103,9 +103,9 @@ void Delta::do_loops(std::span<const double> q, std::span<const double> rho, std
   }
 }
 
-bool Delta::do_loops_change(std::span<const double> q, std::span<const double> rho, std::span<const double> own,
-                            std::span<const int> selected, const Loops& slope, Twist& by_platform,
+bool Delta::do_loops_change(const LoopState& at, const Loops& slope, Twist& by_platform,
                             Eigen::VectorXd& by_actuators) const {
+  const auto& [q, rho, own, selected] = at;
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   for (int i = 0; i < delta_legs; ++i) {
     const DeltaLeg leg = corrected_leg(spec_, i, own);

@@ -89,8 +89,8 @@ std::vector<Polyline> FiveBar::do_skeleton(std::span<const double> q, std::span<
   return lines;
 }
 
-void FiveBar::do_loops(std::span<const double> q, std::span<const double> rho, std::span<const double> own,
-                       std::span<const int> selected, Loops& out) const {
+void FiveBar::do_loops(const LoopState& at, Loops& out) const {
+  const auto& [q, rho, own, selected] = at;
   for (int i = 0; i < 2; ++i) {
     const FiveBarLeg leg = leg_at(spec_, i, q, rho[std::size_t(i)], own);
     out.value[i] = leg.distal - leg.reach;
@@ -105,8 +105,8 @@ void FiveBar::do_loops(std::span<const double> q, std::span<const double> rho, s
   }
 }
 
-void FiveBar::do_sensors(std::span<const double> q, std::span<const double> rho, std::span<const double> own,
-                         std::span<const int> selected, Loops& out) const {
+void FiveBar::do_sensors(const LoopState& at, Loops& out) const {
+  const auto& [q, rho, own, selected] = at;
   for (int i = 0; i < 2; ++i) {
     const FiveBarLeg leg = leg_at(spec_, i, q, rho[std::size_t(i)], own);
     // The distal link's direction turns by n·δ/reach when its ends move by δ apart.
@@ -125,9 +125,9 @@ void FiveBar::do_sensors(std::span<const double> q, std::span<const double> rho,
   }
 }
 
-bool FiveBar::do_loops_change(std::span<const double> q, std::span<const double> rho, std::span<const double> own,
-                              std::span<const int> selected, const Loops& slope, Twist& by_platform,
+bool FiveBar::do_loops_change(const LoopState& at, const Loops& slope, Twist& by_platform,
                               Eigen::VectorXd& by_actuators) const {
+  const auto& [q, rho, own, selected] = at;
   for (int i = 0; i < 2; ++i) {
     const FiveBarLeg leg = leg_at(spec_, i, q, rho[std::size_t(i)], own);
     std::array<double, five_bar_parameters> a{};  // slopes of this leg's columns, see do_loops()

@@ -308,9 +308,9 @@ void SixLegs::loops_at(const Frame<S>& platform, std::span<const S> rho, std::sp
   }
 }
 
-bool SixLegs::do_loops_change(std::span<const double> q, std::span<const double> rho, std::span<const double> own,
-                              std::span<const int> selected, const Loops& slope, Twist& by_platform,
+bool SixLegs::do_loops_change(const LoopState& at, const Loops& slope, Twist& by_platform,
                               Eigen::VectorXd& by_actuators) const {
+  const auto& [q, rho, own, selected] = at;
   const Eigen::Isometry3d X = platform_pose(q);
   const Eigen::Matrix3d& R = X.linear();
   const auto entries = entries_of(spec_.actuation);
@@ -365,9 +365,8 @@ bool SixLegs::do_loops_change(std::span<const double> q, std::span<const double>
   return true;
 }
 
-void SixLegs::do_loops(std::span<const double> q, std::span<const double> rho, std::span<const double> own,
-                       std::span<const int> selected, Loops& out) const {
-  loops_at<double>(frame_of(platform_pose(q)), rho, own, selected, out);
+void SixLegs::do_loops(const LoopState& at, Loops& out) const {
+  loops_at<double>(frame_of(platform_pose(at.q)), at.actuators, at.own, at.selected, out);
 }
 
 /// Slides of all legs where the platform is not lifted by what they were before; `allowed` as Enclosed has it.

@@ -124,7 +124,7 @@ void compare_loops(const ClosedChain& chain, std::size_t own, const LoopOracle& 
     if (!chain.actuator_values({q, correction}, rho)) continue;
     ++compared;
     ClosedChain::Loops loops;
-    chain.loops(q, rho, std::span(correction).subspan(6, own), all, loops);
+    chain.loops({q, rho, std::span(correction).subspan(6, own), all}, loops);
     EXPECT_LT(loops.value.cwiseAbs().maxCoeff(), 1e-12) << "inverse kinematics closes the loops";
     // The platform's twist in the loops is about the base's origin; the oracle's about the platform's.
     Eigen::MatrixXd analytic(loops.value.size(), Eigen::Index(own + 6 + actuators));
@@ -288,7 +288,7 @@ TEST(ClosedChain, InformationEqualsThatOfTheWeightedLoopEquations) {
   std::iota(selected.begin(), selected.end(), 6);
   std::iota(own.begin(), own.end(), 0);
   ClosedChain::Loops loops;
-  chain.loops(q, rho, {}, own, loops);
+  chain.loops({q, rho, {}, own}, loops);
   Eigen::MatrixXd F_X = loops.platform;  // about the platform's origin, as the measured pose is
   for (int k = 0; k < 3; ++k)
     F_X.col(3 + k) += loops.platform.leftCols<3>() * chain.platform(q).translation().cross(Eigen::Vector3d::Unit(k));

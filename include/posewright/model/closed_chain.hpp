@@ -68,10 +68,13 @@ class ClosedChain : public TipModel {
     std::vector<TaylorModel> allowed;  ///< none is negative at a configuration within reach and the actuators' travel
   };
 
-  /// @param own       corrections of the robot's own parameters, or empty for zero
-  /// @param selected  indices into the robot's own parameters; others (< 0 or beyond) give zero columns
-  void loops(std::span<const double> q, std::span<const double> actuators, std::span<const double> own,
-             std::span<const int> selected, Loops& out) const;
+  struct LoopState {
+    std::span<const double> q, actuators;
+    std::span<const double> own;  ///< corrections of the robot's own parameters, or empty for zero
+    std::span<const int>
+        selected;  ///< indices into the robot's own parameters; others (< 0 or beyond) give zero columns
+  };
+  void loops(const LoopState& at, Loops& out) const;
 
  protected:
   explicit ClosedChain(const Placement& placement);
@@ -90,29 +93,30 @@ class ClosedChain : public TipModel {
   virtual bool do_inverse_kinematics(std::span<const double> q, std::span<const double> own,
                                      std::span<double> actuators) const = 0;
   /// `out` has the right sizes and is all zero.
-  virtual void do_loops(std::span<const double> q, std::span<const double> actuators, std::span<const double> own,
-                        std::span<const int> selected, Loops& out) const = 0;
+  virtual void do_loops(const LoopState& at, Loops& out) const = 0;
   /// Derivatives of h = ⟨slope.parameter, F_ξ⟩ + ⟨slope.platform, F_X⟩ + ⟨slope.actuator, F_ρ⟩ of do_loops() along
   /// spatial twists of the platform (base frame), and with the actuators: adds to both, which have the right sizes.
   /// False: the robot does not say.
-  virtual bool do_loops_change(std::span<const double> q, std::span<const double> actuators,
-                               std::span<const double> own, std::span<const int> selected, const Loops& slope,
-                               Twist& by_platform, Eigen::VectorXd& by_actuators) const;
+  virtual bool do_loops_change(const LoopState& at, const Loops& slope, Twist& by_platform,
+                               Eigen::VectorXd& by_actuators) const;
   /// Legs and rims in the base frame, nominal.
   virtual std::vector<Polyline> do_skeleton(std::span<const double> q, std::span<const double> actuators) const = 0;
   /// Values of the redundant sensors and their derivatives, for robots with sensors.
-  virtual void do_sensors(std::span<const double> q, std::span<const double> actuators, std::span<const double> own,
-                          std::span<const int> selected, Loops& out) const;
+  virtual void do_sensors(const LoopState& at, Loops& out) const;
   /// Fills `out`, whose loops have the right sizes and are zero, for all configurations of a box. False if there is no
   /// enclosure.
   virtual bool do_enclose(std::span<const TaylorModel> q, std::span<const double> own, std::span<const int> selected,
                           Enclosed& out) const;
 
-  void read_sensors(std::span<const double> q, std::span<const double> actuators, std::span<const double> own,
-                    std::span<const int> selected, Loops& out) const;
+  void read_sensors(const LoopState& at, Loops& out) const;
 
   void add_turned_freedoms(std::span<const double> q, const Eigen::Ref<const Twists>& by_freedoms,
                            std::span<double> gradient) const;
+
+  struct Scratch;
+  static Scratch& scratch_of_this_thread();
+  /// Loops and response at a point; false out of reach and at a singularity.
+  bool respond(const Point& at, std::span<const int> selected, Scratch& s) const;
 
   Eigen::Isometry3d X_MeasureBase_;
   int own_count_ = 0;

@@ -19,13 +19,10 @@ class FiveBar : public ClosedChain {
   bool do_inverse_kinematics(std::span<const double> q, std::span<const double> own,
                              std::span<double> actuators) const override;
   std::vector<Polyline> do_skeleton(std::span<const double> q, std::span<const double> actuators) const override;
-  void do_loops(std::span<const double> q, std::span<const double> actuators, std::span<const double> own,
-                std::span<const int> selected, Loops& out) const override;
-  bool do_loops_change(std::span<const double> q, std::span<const double> actuators, std::span<const double> own,
-                       std::span<const int> selected, const Loops& slope, Twist& by_platform,
+  void do_loops(const LoopState& at, Loops& out) const override;
+  bool do_loops_change(const LoopState& at, const Loops& slope, Twist& by_platform,
                        Eigen::VectorXd& by_actuators) const override;
-  void do_sensors(std::span<const double> q, std::span<const double> actuators, std::span<const double> own,
-                  std::span<const int> selected, Loops& out) const override;
+  void do_sensors(const LoopState& at, Loops& out) const override;
 
   FiveBarSpec spec_;
 };

@@ -27,10 +27,8 @@ class SixLegs : public ClosedChain {
   bool do_inverse_kinematics(std::span<const double> q, std::span<const double> own,
                              std::span<double> actuators) const override;
   std::vector<Polyline> do_skeleton(std::span<const double> q, std::span<const double> actuators) const override;
-  void do_loops(std::span<const double> q, std::span<const double> actuators, std::span<const double> own,
-                std::span<const int> selected, Loops& out) const override;
-  bool do_loops_change(std::span<const double> q, std::span<const double> actuators, std::span<const double> own,
-                       std::span<const int> selected, const Loops& slope, Twist& by_platform,
+  void do_loops(const LoopState& at, Loops& out) const override;
+  bool do_loops_change(const LoopState& at, const Loops& slope, Twist& by_platform,
                        Eigen::VectorXd& by_actuators) const override;
   bool do_enclose(std::span<const TaylorModel> q, std::span<const double> own, std::span<const int> selected,
                   Enclosed& out) const override;

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "measure_camera.hpp"
+#include "instruments.hpp"
 #include "posewright/support/dense.hpp"
 
 namespace posewright {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "measure_distance.hpp"
+#include "instruments.hpp"
 #include "posewright/model/closed_chain.hpp"
 #include "posewright/model/pair_names.hpp"
 #include "posewright/support/dense.hpp"

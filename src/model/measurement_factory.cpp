@@ -3,15 +3,7 @@
 #include <stdexcept>
 
 #include "distance_pair_model.hpp"
-#include "joint_sensor_model.hpp"
-#include "measure_camera.hpp"
-#include "measure_distance.hpp"
-#include "measure_inclination.hpp"
-#include "measure_line.hpp"
-#include "measure_plane.hpp"
-#include "measure_points.hpp"
-#include "measure_pose.hpp"
-#include "measure_together.hpp"
+#include "instruments.hpp"
 #include "posewright/model/campaigns.hpp"
 #include "posewright/model/explicit_model.hpp"
 
@@ -20,29 +12,8 @@ namespace {
 
 using Measurement = std::unique_ptr<MeasurementModel>;
 
-// One row an instrument: its model of a tip that is looked at, and what it looks at. A new one is one file and one row.
-Measurement model_of(const PoseMeasurement&, const MeasurementSpec& spec) { return std::make_unique<PoseModel>(spec); }
-Measurement model_of(const PointsMeasurement&, const MeasurementSpec& spec) {
-  return std::make_unique<PointsModel>(spec);
-}
-Measurement model_of(const DistanceMeasurement& distance, const MeasurementSpec& spec) {
-  if (distance.anchors.empty()) return nullptr;
-  return std::make_unique<DistanceModel>(spec);
-}
-Measurement model_of(const PlaneMeasurement&, const MeasurementSpec& spec) {
-  return std::make_unique<PlaneModel>(spec);
-}
-Measurement model_of(const LineMeasurement&, const MeasurementSpec& spec) { return std::make_unique<LineModel>(spec); }
-Measurement model_of(const InclinationMeasurement&, const MeasurementSpec& spec) {
-  return std::make_unique<InclinationModel>(spec);
-}
-Measurement model_of(const CameraMeasurement&, const MeasurementSpec& spec) {
-  return std::make_unique<CameraModel>(spec);
-}
+// These look at no single tip.
 Measurement model_of(const JointsMeasurement&, const MeasurementSpec&) { return nullptr; }
-Measurement model_of(const TogetherMeasurement&, const MeasurementSpec& spec) {
-  return std::make_unique<TogetherModel>(spec);
-}
 // Of several instruments each has a model of its own (InstrumentChoice).
 Measurement model_of(const InstrumentList&, const MeasurementSpec&) { return nullptr; }
 
@@ -64,7 +35,7 @@ Model model_without_view(const DistanceMeasurement&, std::unique_ptr<TipModel> r
 }
 Model model_without_view(const JointsMeasurement&, std::unique_ptr<TipModel> robot, const MeasurementSpec& spec,
                          const ProblemFile& file) {
-  return std::make_unique<JointSensorModel>(std::move(robot), spec, file);
+  return joint_sensor_model(std::move(robot), spec, file);
 }
 
 Measurement looking(const MeasurementSpec& spec) {

@@ -40,7 +40,7 @@ Design restart(const Prepared& p, const ApproximateDesign* approximate, int kick
   options.kicks = kicks;
   options.threads = 1;
   options.seed = seed;
-  return make_planner("exchange")
+  return find_planner("exchange")
       ->plan({{&p.blocks, p.size.nuisance, 1}, p.criterion.get(), p.size.poses, approximate}, options, Monitor{});
 }
 

@@ -1,5 +1,3 @@
-#include "automatic.hpp"
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -9,8 +7,9 @@
 #include "continuous.hpp"
 #include "exchange.hpp"
 #include "extended_task.hpp"
-#include "posewright/support/bytes.hpp"
+#include "planners.hpp"
 #include "posewright/criterion/information_function.hpp"
+#include "posewright/support/bytes.hpp"
 #include "posewright/support/parallel.hpp"
 #include "posewright/support/tasks.hpp"
 #include "reduced_task.hpp"
@@ -303,10 +302,20 @@ class AutomaticSearch {
   std::vector<std::vector<double>> places_;
 };
 
+/// `auto`, where poses can be moved: greedy → exchange from a dozen starts (the greedy set and optimal weights, among
+/// the candidates and with the configurations that the weights use over the workspace) → the best of each moved between
+/// the candidates for a few rounds, the best of all to the end → all places found so far as candidates, exchanged and
+/// moved again while a round gains. For blocks alone: greedy → exchange with all restarts → tabu. Each stage starts
+/// from the best so far and never loses it; Design::stages tells what each gained. Under a time limit rounds of
+/// exchange with restarts and kicks, tabu and moves follow with other seeds until the time is used.
+Design automatic_design(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor) {
+  return AutomaticSearch(task, options, monitor).carry_out();
+}
+
 }  // namespace
 
-Design AutomaticPlanner::do_plan(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor) const {
-  return AutomaticSearch(task, options, monitor).carry_out();
+Planner automatic_planner() {
+  return {"auto", "greedy, exchange, tabu, continuous and new candidates in turn", automatic_design};
 }
 
 }  // namespace posewright

@@ -1,11 +1,10 @@
-#include "branch_and_bound.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "design_tree.hpp"
 #include "exchange.hpp"
+#include "planners.hpp"
 #include "posewright/criterion/information_function.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/parallel.hpp"
@@ -66,13 +65,16 @@ class Enumeration {
   Eigen::MatrixXd base_;
 };
 
-}  // namespace
-
-Design BranchAndBoundPlanner::do_plan(const DesignTask& task, const PlannerOptions& options,
-                                      const Monitor& monitor) const {
+/// The proved optimum over the candidates (Welch 1982, Technometrics 24(1)). Each node fixes how often some candidates
+/// are chosen at least and at most (DesignTree); its bound is the optimum over numbers that need not be whole
+/// (NodeRelaxation), which knows how few rows are left to choose (RankLimitedLogDet; RowInertia for o3). `exchange`
+/// finds the design to begin with. Criteria without a bound are enumerated; throws CannotDo if that would be more than
+/// a few million sets. Ends early when the monitor says so, or where PlannerOptions::gap lets it: `optimal` tells, and
+/// `bound` what no design exceeds.
+Design proved_design(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor) {
   PlannerOptions first = options;
   first.use_all_time = false;  // the proof is what takes it
-  Design design = ExchangePlanner().plan(task, first, monitor);
+  Design design = exchange_planner().plan(task, first, monitor);
   if (task.criterion->function().degree() > 0) {
     DesignTree tree(task, thread_count(options.threads), monitor, design, options.gap);
     // Where there is a smoother criterion, Φ has kinks and many local optima.
@@ -81,7 +83,7 @@ Design BranchAndBoundPlanner::do_plan(const DesignTask& task, const PlannerOptio
         PlannerOptions more = first;
         more.restarts = starts;
         more.seed += std::uint64_t(call);
-        return ExchangePlanner().plan(task, more, monitor);
+        return exchange_planner().plan(task, more, monitor);
       });
     const bool ended = tree.run();
     design.optimal = ended && *design.bound <= design.value + equal_values;
@@ -99,6 +101,12 @@ Design BranchAndBoundPlanner::do_plan(const DesignTask& task, const PlannerOptio
   }
   design.stopped = !design.optimal;
   return design;
+}
+
+}  // namespace
+
+Planner branch_and_bound_planner() {
+  return {"branch_and_bound", "the proved optimum of small problems", proved_design};
 }
 
 }  // namespace posewright

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "exchange.hpp"
+#include "planners.hpp"
 #include "posewright/criterion/information_function.hpp"
 #include "posewright/planning/ascent.hpp"
 #include "posewright/planning/block_gradient.hpp"
@@ -346,17 +347,26 @@ long improve_roughly(const DesignTask& task, PoseSet& poses, const Monitor& moni
   return InTurn(task, poses, 1, 1).go(rough_rounds, monitor);
 }
 
-Design ContinuousPlanner::do_plan(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor) const {
+namespace {
+
+/// The best design of `exchange`, improved. Throws CannotDo if the task has no configurations.
+Design continuous_design(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor) {
   if (task.space == nullptr)
     throw CannotDo("continuous moves poses between the candidates: it needs a robot, not blocks");
   if (!task.criterion->of_information_alone())
     throw CannotDo("continuous cannot move poses for a plan with reserve; use exchange or tabu");
-  Design design = ExchangePlanner().plan(task, options, monitor);
+  Design design = exchange_planner().plan(task, options, monitor);
   PoseSet poses = pose_set_of(task, design.members);
   design.exchanges += improve(task, poses, options.threads, monitor);
   write_to(design, poses, task.candidates.blocks->count());
   design.stopped = design.stopped || monitor.should_stop();
   return design;
+}
+
+}  // namespace
+
+Planner continuous_planner() {
+  return {"continuous", "exchange, then the poses themselves are moved by NLopt", continuous_design};
 }
 
 }  // namespace posewright

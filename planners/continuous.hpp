@@ -27,13 +27,4 @@ long improve(const DesignTask& task, PoseSet& poses, int threads, const Monitor&
 /// The first rounds of it, each pose in turn: enough to tell which of several sets is worth the rest.
 long improve_roughly(const DesignTask& task, PoseSet& poses, const Monitor& monitor);
 
-/// The best design of `exchange`, improved. Throws CannotDo if the task has no configurations.
-class ContinuousPlanner : public Planner {
- public:
-  std::string name() const override { return "continuous"; }
-
- private:
-  Design do_plan(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor) const override;
-};
-
 }  // namespace posewright

@@ -1,5 +1,6 @@
 #include "exchange.hpp"
 
+#include "planners.hpp"
 #include "restarts.hpp"
 
 namespace posewright {
@@ -55,12 +56,26 @@ Outcome exchange_restart(const DesignTask& task, std::size_t restart, int kicks,
   return exchange_search(task, start_of_restart(task, restart, random, monitor), kicks, random, monitor);
 }
 
-Design ExchangePlanner::do_plan(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor) const {
+namespace {
+
+/// Best-exchange search from many starts. One pass tries every member once, the one that Φ misses least first
+/// (Cook & Nachtsheim 1980), and takes its best partner at once (Fedorov 1972); passes repeat until none gains.
+/// Each local optimum is then kicked:
+/// a few members are replaced at random and the passes repeat, keeping what gains (iterated local search, Lourenço,
+/// Martin & Stützle 2003); every other restart makes as many fresh starts instead. Starts: rounded optimal weights,
+/// draws from them, and uniform draws, in turn. Restarts run in parallel; each depends on (seed, restart index) alone.
+Design exchange_design(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor) {
   return run_restarts(task, options, monitor, "exchange",
                       [&](const DesignTask& part, std::size_t i, Random& random, const Monitor& watch) {
                         return exchange_search(part, start_of_restart(part, i, random, watch),
                                                affordable_kicks(part, options), random, watch);
                       });
+}
+
+}  // namespace
+
+Planner exchange_planner() {
+  return {"exchange", "best exchange with rank-r updates from many starts", exchange_design};
 }
 
 }  // namespace posewright

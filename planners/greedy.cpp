@@ -1,7 +1,6 @@
-#include "greedy.hpp"
-
 #include <algorithm>
 
+#include "planners.hpp"
 #include "restarts.hpp"
 
 namespace posewright {
@@ -13,9 +12,10 @@ int affordable_starts(const DesignTask& task, int most) {
   return int(std::clamp(most_products / products_of_a_pass(task), 1.0, double(most)));
 }
 
-}  // namespace
-
-Design GreedyPlanner::do_plan(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor) const {
+/// Adds the best candidate until there are N. The first start begins with nothing; the others with one random
+/// candidate, because the first choices, made while most parameters are unknown, decide much (GRASP, Feo & Resende
+/// 1995). No exchange follows: what greedy misses is what the other planners add.
+Design greedy_design(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor) {
   // Over all candidates: there is no pass afterwards that would bring back what a reduction left out.
   const ApproximateDesign nothing_known;
   DesignTask whole = task;
@@ -32,5 +32,9 @@ Design GreedyPlanner::do_plan(const DesignTask& task, const PlannerOptions& opti
                         return outcome_of(*state, 0);
                       });
 }
+
+}  // namespace
+
+Planner greedy_planner() { return {"greedy", "one pose after the other, no way back", greedy_design}; }
 
 }  // namespace posewright

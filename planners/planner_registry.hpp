@@ -1,6 +1,5 @@
 #pragma once
 
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -8,16 +7,9 @@
 
 namespace posewright {
 
-/// One row a planner: the name users write and what it does.
-struct PlannerEntry {
-  std::string name;
-  std::string summary;
-  std::unique_ptr<Planner> (*make)();
-};
-
-const std::vector<PlannerEntry>& planner_registry();
+const std::vector<Planner>& planner_registry();
 /// nullptr if no planner has that name.
-std::unique_ptr<Planner> make_planner(const std::string& name);
+const Planner* find_planner(const std::string& name);
 /// "exchange, …": for messages with the allowed values.
 std::string planner_names();
 

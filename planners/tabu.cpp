@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "planners.hpp"
 #include "restarts.hpp"
 
 namespace posewright {
@@ -105,11 +106,21 @@ Outcome tabu_search(const DesignTask& task, std::vector<int> start, int idle, Ra
   return outcome_of(*state, exchanges);
 }
 
-Design TabuPlanner::do_plan(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor) const {
+namespace {
+
+/// Tabu search (Glover 1989, ORSA J. Computing 1(3)) over the swaps that `exchange` looks at: the best swap is taken
+/// even if it loses; who left may not come back and who entered may not leave for a while (the tenure, drawn anew each
+/// time), unless that gives the best design ever seen (aspiration). Ends after `idle` swaps without a new best. Starts
+/// as `exchange`, each from its local optimum.
+Design tabu_design(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor) {
   return run_restarts(
       task, options, monitor, "tabu", [&](const DesignTask& part, std::size_t i, Random& random, const Monitor& watch) {
         return tabu_search(part, start_of_restart(part, i, random, watch), tabu_patience(part, options), random, watch);
       });
 }
+
+}  // namespace
+
+Planner tabu_planner() { return {"tabu", "the same neighbourhood, going on where exchange stops", tabu_design}; }
 
 }  // namespace posewright

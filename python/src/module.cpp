@@ -13,7 +13,7 @@ void bind_criteria(py::module_& m) {
       "criteria", [] { return dict_of(criterion_registry(), &CriterionEntry::name, &CriterionEntry::summary); },
       "Names of the criteria, each with what it maximises.");
   m.def(
-      "methods", [] { return dict_of(planner_registry(), &PlannerEntry::name, &PlannerEntry::summary); },
+      "methods", [] { return dict_of(planner_registry(), &Planner::name, &Planner::summary); },
       "Names of the planners, each with what it does.");
   m.def("_shown", &shown_value, py::arg("value"), py::arg("unit"), "A value in SI as tables show it.");
 }

@@ -50,14 +50,14 @@ Design Planner::plan(const DesignTask& task, const PlannerOptions& options, cons
     throw std::invalid_argument("design task: " + std::to_string(task.poses) + " poses from " +
                                 std::to_string(available) + " choices");
   if (options.restarts < 1) throw std::invalid_argument("planner options: restarts must be at least 1");
-  Design design = do_plan(task, options, monitor);
+  Design design = search(task, options, monitor);
   if (!std::isfinite(design.value) && !monitor.should_stop()) {
     const FromIdentifyingStarts identifying(*task.criterion, task.candidates.blocks->columns());
     DesignTask again = task;
     again.criterion = &identifying;
     // Candidates that the weights promise leave those poses out.
     again.approximate = nullptr;
-    design = do_plan(again, options, monitor);
+    design = search(again, options, monitor);
   }
   if (!std::isfinite(design.value))
     throw NothingIdentifies("no set of " + std::to_string(task.poses) + " candidates was found that identifies all " +

@@ -168,7 +168,7 @@ void require_known(const std::string& criterion, const std::string& method, cons
     throw InputError(criterion_place,
                      "unknown criterion '" + criterion + "'" + meant_instead(criterion, names_in(criterion_registry())),
                      fmt::format("available: {}{}{}", criterion_names(), other.empty() ? "" : ", ", other));
-  if (make_planner(method) == nullptr)
+  if (find_planner(method) == nullptr)
     throw InputError(method_place,
                      "unknown method '" + method + "'" + meant_instead(method, names_in(planner_registry())),
                      "available: " + planner_names());
@@ -384,7 +384,7 @@ class DesignSearch {
     Monitor shifted;
     shifted.follow(monitor_);
     shifted.on_progress = [this](const Progress& progress) { report_in_plan_units(progress); };
-    result_.design = make_planner(request_.method)->plan(task, request_.planner, shifted);
+    result_.design = find_planner(request_.method)->plan(task, request_.planner, shifted);
     result_.stopped = approximate_.stopped || result_.design.stopped;
   }
 

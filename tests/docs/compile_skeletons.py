@@ -8,7 +8,7 @@ import tempfile
 
 def main(source, build, compiler, *folders):
     root = pathlib.Path(source)
-    includes = [root, root / "include", pathlib.Path(build) / "include"]
+    includes = [root, root / "include", root / "planners", pathlib.Path(build) / "include"]
     includes += [root / "src" / part for part in ("cli", "workspace", "formats")] + list(folders)
     blocks = re.findall(r"```cpp\n(.*?)```", (root / "docs/extending.md").read_text(), re.S)
     assert len(blocks) >= 6

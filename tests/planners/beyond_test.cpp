@@ -37,10 +37,10 @@ TEST(BranchAndBound, ProvesFiftySmallProblemsAndAutoFindsTheOptimumOfNearlyAll) 
     options.cap = 1.0 / poses;
     const ApproximateDesign approximate = solve_approximate_design(blocks, criterion->function(), options, Monitor{});
     DesignTask task{{&blocks, 0, 1}, criterion.get(), poses, &approximate};
-    const Design proved = make_planner("branch_and_bound")->plan(task, {}, Monitor{});
+    const Design proved = find_planner("branch_and_bound")->plan(task, {}, Monitor{});
     EXPECT_TRUE(proved.optimal) << seed;
     EXPECT_LE(proved.value, approximate.bound_for(poses));
-    const Design searched = make_planner("auto")->plan(task, {}, Monitor{});
+    const Design searched = find_planner("auto")->plan(task, {}, Monitor{});
     EXPECT_LE(searched.value, proved.value + 1e-8);
     if (searched.value > proved.value - 1e-8) ++found;
   }
@@ -107,7 +107,7 @@ TEST(BranchAndBound, ReplicatedDesignReachesTheReplicationBound) {
   const auto criterion = make_criterion("o1", plain_data(3));
   const ApproximateDesign approximate = solve_approximate_design(blocks, criterion->function(), {}, Monitor{});
   DesignTask task{{&blocks, 0, 6}, criterion.get(), 6, &approximate};
-  const Design proved = make_planner("branch_and_bound")->plan(task, {}, Monitor{});
+  const Design proved = find_planner("branch_and_bound")->plan(task, {}, Monitor{});
   EXPECT_EQ(proved.members, (std::vector<int>{0, 0, 10, 10, 20, 20}));
   EXPECT_NEAR(proved.value, approximate.bound_for(6), 1e-8);
 }
@@ -130,8 +130,8 @@ TEST(Continuous, WhatTakesLongToCheckIsAskedOfFewAndHoldsAllTheSame) {
     task.space = &space;
     PlannerOptions options;
     options.restarts = 1;
-    const Design exchanged = make_planner("exchange")->plan(task, options, Monitor{});
-    const Design design = make_planner("continuous")->plan(task, options, Monitor{});
+    const Design exchanged = find_planner("exchange")->plan(task, options, Monitor{});
+    const Design design = find_planner("continuous")->plan(task, options, Monitor{});
     EXPECT_GE(design.value, exchanged.value - 1e-9);
     for (const auto& q : design.added) EXPECT_TRUE(space.inside(q)) << seed;
     moved += int(design.added.size());

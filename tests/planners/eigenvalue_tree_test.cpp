@@ -171,7 +171,7 @@ TEST(EigenvalueTree, ASearchBesideItIsAskedForMoreStartsAsItGrowsAndItsDesignCou
   const BlockArray blocks = random_blocks(100, 1, 9, 6100);
   const auto criterion = make_criterion("o3", graded_data(9, 0));
   DesignTask task{{&blocks, 0, 1}, criterion.get(), 14, nullptr};
-  const Design proved = make_planner("branch_and_bound")->plan(task, {}, Monitor{});
+  const Design proved = find_planner("branch_and_bound")->plan(task, {}, Monitor{});
   ASSERT_TRUE(proved.optimal);
   Design design = proved;
   design.value = -50.0;
@@ -209,7 +209,7 @@ TEST(EigenvalueTree, AGapEndsTheProofWhereNoDesignIsBetterByMore) {
     EXPECT_LE(*design.bound, design.value + allowed + 1e-9) << seed;
     PlannerOptions options;
     options.gap = 0.2;
-    const Design planned = make_planner("branch_and_bound")->plan(task, options, Monitor{});
+    const Design planned = find_planner("branch_and_bound")->plan(task, options, Monitor{});
     EXPECT_FALSE(planned.stopped);
     EXPECT_GE(*planned.bound, optimum - 1e-9) << seed;
     EXPECT_LE(*planned.bound, planned.value + allowed + 1e-9) << seed;

@@ -35,7 +35,7 @@ void PrintTo(const Case& c, std::ostream* out) {
 
 std::vector<Case> all_cases() {
   std::vector<Case> cases;
-  for (const PlannerEntry& planner : planner_registry())
+  for (const Planner& planner : planner_registry())
     for (const CriterionEntry& criterion : criterion_registry())
       for (const int rows : {1, 3})
         for (const bool repeats : {false, true}) cases.push_back({planner.name, criterion.name, rows, repeats});
@@ -160,7 +160,7 @@ class PlannerKit : public testing::TestWithParam<Case> {
     options.threads = threads;
     // Criteria without a swap formula cost a factorisation for every candidate they look at.
     if (!bounded) options.kicks = 5;
-    return make_planner(GetParam().planner)->plan(task, options, Monitor{});
+    return find_planner(GetParam().planner)->plan(task, options, Monitor{});
   }
 };
 
@@ -284,7 +284,7 @@ class PlannerWithoutRepeats : public PlannerKit {};
 TEST_P(PlannerWithoutRepeats, ContradictoryTasksAreRefused) {
   const BlockArray blocks = random_blocks(9, GetParam().rows, 4, 15);
   const auto criterion = make_criterion(GetParam().criterion, kit_data(blocks.columns(), 0));
-  const auto planner = make_planner(GetParam().planner);
+  const auto planner = find_planner(GetParam().planner);
   EXPECT_THROW(planner->plan({{&blocks, 0, 1}, criterion.get(), 10, nullptr}, {}, Monitor{}), std::invalid_argument);
   EXPECT_THROW(planner->plan({{&blocks, 0, 1}, criterion.get(), 0, nullptr}, {}, Monitor{}), std::invalid_argument);
   EXPECT_THROW(planner->plan({{nullptr, 0, 1}, criterion.get(), 2, nullptr}, {}, Monitor{}), std::invalid_argument);
@@ -307,7 +307,7 @@ TEST_P(PlannerWithoutRepeats, StopsWhenToldAndStillReturnsAPlan) {
   options.restarts = 1000000;
   DesignTask task{{&space.blocks(), 0, 1}, criterion.get(), small ? 9 : 20, nullptr};
   if (needs_configurations(GetParam().planner)) task.space = &space;
-  const Design design = make_planner(GetParam().planner)->plan(task, options, monitor);
+  const Design design = find_planner(GetParam().planner)->plan(task, options, monitor);
   EXPECT_EQ(design.members.size(), std::size_t(task.poses));
   EXPECT_TRUE(design.stopped);
 }

@@ -40,7 +40,7 @@ TEST(Restarts, MoreOfThemAreNeverWorse) {
   for (const int restarts : {1, 2, 5, 20, 60}) {
     PlannerOptions options;
     options.restarts = restarts;
-    const double value = make_planner("exchange")->plan(task, options, Monitor{}).value;
+    const double value = find_planner("exchange")->plan(task, options, Monitor{}).value;
     EXPECT_GE(value, before - 1e-12) << restarts;
     before = value;
   }
@@ -52,7 +52,7 @@ TEST(Restarts, GreedyStartsOnceWhereAStartTakesLongUnlessMoreAreStated) {
     const BlockArray blocks = random_blocks(candidates, 2, 6, 6);
     PlannerOptions options;
     options.restarts_stated = stated;
-    return make_planner("greedy")->plan({{&blocks, 0, 1}, criterion.get(), 900}, options, Monitor{}).restarts;
+    return find_planner("greedy")->plan({{&blocks, 0, 1}, criterion.get(), 900}, options, Monitor{}).restarts;
   };
   EXPECT_EQ(restarts(2000, false), 10);
   EXPECT_EQ(restarts(60000, false), 1);
@@ -74,7 +74,7 @@ TEST(Restarts, WithoutABoundCandidatesBeyondTheFirstSampleAreTakenUp) {
   const FunctionCriterion without("without", std::make_shared<LogDetWithoutBound>(0, columns));
   const auto criterion = make_criterion("o1", unit_data(columns));
   const auto value = [&](const BlockArray& among, const Criterion& by) {
-    return make_planner("exchange")->plan({{&among, 0, 1}, &by, poses}, PlannerOptions{}, Monitor{}).value;
+    return find_planner("exchange")->plan({{&among, 0, 1}, &by, poses}, PlannerOptions{}, Monitor{}).value;
   };
   EXPECT_GT(value(blocks, without), value(some, *criterion) + 0.5);
   EXPECT_NEAR(value(blocks, without), value(blocks, *criterion), 0.3);

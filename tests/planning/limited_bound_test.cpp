@@ -77,7 +77,7 @@ TEST_P(LimitedBound, IsNearTheBestPlanOfManyPoses) {
   const double bound =
       limited_bound({set.blocks, set.spacing, poses, poses}, criterion->function(), free, 1, Monitor{});
   const DesignTask task{{&set.blocks, 1, poses, nullptr, &set.spacing}, criterion.get(), poses, &free};
-  const Design plan = make_planner("exchange")->plan(task, {}, Monitor{});
+  const Design plan = find_planner("exchange")->plan(task, {}, Monitor{});
   EXPECT_TRUE(set.spacing.allows(plan.members));
   const double degree = criterion->function().degree();
   EXPECT_GT(std::exp((plan.value - bound) / degree), 0.98);

@@ -64,16 +64,14 @@ struct Design {
 };
 
 /// A search algorithm over sets of N candidates. Works for every criterion.
-class Planner {
- public:
-  virtual ~Planner() = default;
-  virtual std::string name() const = 0;
+struct Planner {
+  std::string name;  ///< that users write
+  std::string summary;
+  Design (*search)(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor);
+
   /// Checks the task, runs the search. At least one start is carried out however early the monitor stops.
   /// Throws std::invalid_argument on a task that contradicts itself, CannotDo if every start stays singular.
   Design plan(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor) const;
-
- private:
-  virtual Design do_plan(const DesignTask& task, const PlannerOptions& options, const Monitor& monitor) const = 0;
 };
 
 }  // namespace posewright

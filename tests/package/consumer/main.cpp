@@ -7,5 +7,5 @@
 int main() {
   std::cout << posewright::observability_indices(Eigen::Vector3d(4, 2, 1), 3).o2 << " " << posewright::planner_names()
             << "\n";
-  return posewright::make_planner("exchange") == nullptr;
+  return posewright::find_planner("exchange") == nullptr;
 }

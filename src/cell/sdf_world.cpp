@@ -2,12 +2,97 @@
 #include <map>
 
 #include "obstacle_files.hpp"
-#include "sdf_frames.hpp"
+#include "posewright/support/text.hpp"
+#include "sdf_element.hpp"
 #include "sdf_model_file.hpp"
 #include "sdf_shape.hpp"
 
 namespace posewright {
 namespace {
+
+constexpr const char* world = "world";
+constexpr const char* frames_allowed = "frames that form a tree";
+constexpr int deepest = 100;  // placement frames of models in models
+
+/// Scope of names: those of a model or world, and the default frame of a pose.
+struct SdfScope {
+  std::string prefix;  ///< "MODEL::" of a model in its world, "" of the world
+  std::string own;     ///< full name of the model's frame, or "world"
+  std::string model;   ///< full name of the model that links here belong to
+
+  /// The full name of what is called `name` here; `otherwise` if that is "".
+  std::string full(const std::string& name, const std::string& otherwise) const {
+    if (name.empty()) return otherwise;
+    if (name == "__model__" || (name == world && prefix.empty())) return own;
+    return prefix + name;
+  }
+  std::string full(const std::string& name) const { return full(name, own); }
+};
+
+/// The frames of a world by their full names (`model::link`), each placed in another one, added in any order.
+/// Source: SDFormat specification, "Pose frame semantics" (version 1.9).
+class SdfFrames {
+ public:
+  bool has(const std::string& name) const { return frames_.count(name) > 0; }
+  /// `frame` is at X in `base`, or, if `placement` is not "", where that frame, which hangs on `inner`, is at X.
+  /// @param element  that states it, for errors. Throws InputError if the name is taken.
+  void add(const std::string& frame, const std::string& base, const Eigen::Isometry3d& X, const SdfElement& element,
+           const std::string& placement = "", const std::string& inner = "") {
+    if (!frames_.emplace(frame, Frame{base, X, element, placement, inner}).second || frame == world)
+      element.fail("the name " + in_quotes(frame) + " is taken", "a name of its own for each model, link and frame");
+  }
+  /// X of `frame`, which `asked` names, in the world. Throws InputError at an element whose frame is not there, or
+  /// hangs on itself.
+  Eigen::Isometry3d in_world(const std::string& frame, const SdfElement& asked) {
+    const std::vector<const Named*> open = way(frame, world, asked);
+    Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
+    const std::string& top = open.empty() ? frame : open.back()->second.base;
+    if (const auto known = in_world_.find(top); known != in_world_.end()) X = known->second;
+    for (auto at = open.rbegin(); at != open.rend(); ++at) {
+      X = X * in_base((*at)->second, deepest);
+      in_world_[(*at)->first] = X;
+    }
+    return X;
+  }
+
+ private:
+  struct Frame {
+    std::string base;
+    Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
+    SdfElement element;
+    std::string placement, inner;
+  };
+  using Named = std::map<std::string, Frame>::value_type;
+
+  /// From `frame` up to what hangs on `root`, or on a frame that is known in the world.
+  std::vector<const Named*> way(const std::string& frame, const std::string& root, const SdfElement& asked) const {
+    std::vector<const Named*> way;
+    std::string at = frame;
+    while (at != root && (root != world || in_world_.count(at) == 0)) {
+      const SdfElement& by = way.empty() ? asked : way.back()->second.element;
+      const auto found = frames_.find(at);
+      if (found == frames_.end())
+        by.fail("the frame " + in_quotes(at) + " is not there",
+                "a model, link, joint or frame of the same level, or one below (MODEL::LINK)");
+      if (way.size() == frames_.size()) by.fail("the pose of " + in_quotes(at) + " depends on itself", frames_allowed);
+      way.push_back(&*found);
+      at = found->second.base;
+    }
+    return way;
+  }
+
+  Eigen::Isometry3d in_base(const Frame& frame, int depth) const {
+    if (frame.placement.empty()) return frame.X;
+    if (depth == 0) frame.element.fail("the placement frame depends on itself", frames_allowed);
+    Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
+    for (const Named* named : way(frame.placement, frame.inner, frame.element))
+      X = in_base(named->second, depth - 1) * X;
+    return frame.X * X.inverse();
+  }
+
+  std::map<std::string, Frame> frames_;
+  std::map<std::string, Eigen::Isometry3d> in_world_;
+};
 
 constexpr int deepest_include = 30;
 constexpr long most_elements = 200'000;  // of a world with all that it includes

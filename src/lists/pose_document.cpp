@@ -265,12 +265,6 @@ std::vector<std::unique_ptr<PoseDocument>> parse_documents(const std::vector<Doc
   return documents;
 }
 
-std::unique_ptr<PoseDocument> parse_document(std::string bytes, const std::string& name,
-                                             const std::vector<Coordinate>& coordinates,
-                                             const DocumentOptions& options) {
-  return std::move(parse_documents({{std::move(bytes), name}}, coordinates, options).front());
-}
-
 std::vector<std::unique_ptr<PoseDocument>> read_documents(const std::vector<std::filesystem::path>& paths,
                                                           const std::vector<Coordinate>& coordinates,
                                                           const DocumentOptions& options) {

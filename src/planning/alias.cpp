@@ -16,7 +16,7 @@ constexpr double alias_rank_tolerance = 1e-11;
 AliasFit fit_aliases(const BlockArray& blocks, int own, const Eigen::VectorXd& known) {
   const Eigen::Index m = own, more = blocks.columns() - m, rows = blocks.all().rows();
   if (m < 1 || more < 0 || (known.size() != 0 && known.size() != m))
-    throw std::invalid_argument("alias_matrix: sizes do not fit");
+    throw std::invalid_argument("fit_aliases: sizes do not fit");
   const Eigen::Index before = known.size();
   Eigen::MatrixXd fitted = Eigen::MatrixXd::Zero(rows + before, m);
   fitted.topRows(rows) = blocks.all().leftCols(m);
@@ -32,10 +32,6 @@ AliasFit fit_aliases(const BlockArray& blocks, int own, const Eigen::VectorXd& k
   const Eigen::MatrixXd taken = length.cwiseInverse().asDiagonal() * qr.solve(left_out);
   left_out.noalias() -= fitted * taken;
   return {taken, left_out.colwise().squaredNorm()};
-}
-
-Eigen::MatrixXd alias_matrix(const BlockArray& blocks, int own, const Eigen::VectorXd& known) {
-  return fit_aliases(blocks, own, known).taken;
 }
 
 }  // namespace posewright

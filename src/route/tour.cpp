@@ -175,12 +175,6 @@ std::vector<int> double_bridge(const std::vector<int>& tour, Random& random) {
 
 }  // namespace
 
-double tour_cost(const Eigen::MatrixXd& cost, const std::vector<int>& order, bool closed) {
-  double sum = closed && order.size() > 1 ? cost(order.back(), order.front()) : 0.0;
-  for (std::size_t i = 1; i < order.size(); ++i) sum += cost(order[i - 1], order[i]);
-  return sum;
-}
-
 std::vector<int> cheapest_tour(const Eigen::MatrixXd& cost, const TourOptions& options) {
   const int n = int(cost.rows());
   if (cost.cols() != n || !cost.allFinite() || (n > 0 && cost.minCoeff() < 0))

@@ -21,6 +21,12 @@
 namespace posewright {
 namespace {
 
+std::unique_ptr<PoseDocument> parse_document(std::string bytes, const std::string& name,
+                                             const std::vector<Coordinate>& coordinates,
+                                             const DocumentOptions& options) {
+  return std::move(parse_documents({{std::move(bytes), name}}, coordinates, options).front());
+}
+
 using readers::Program;
 using testing::HasSubstr;
 

@@ -12,6 +12,10 @@
 namespace posewright {
 namespace {
 
+Eigen::MatrixXd alias_matrix(const BlockArray& blocks, int own, const Eigen::VectorXd& known = {}) {
+  return fit_aliases(blocks, own, known).taken;
+}
+
 constexpr int runs = plackett_burman_runs, factors = plackett_burman_factors, pairs = factors * (factors - 1) / 2;
 
 TEST(Alias, PlackettBurmanSharesEachInteractionAmongTheFourOtherFactorsByAThird) {

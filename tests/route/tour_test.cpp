@@ -10,6 +10,13 @@
 namespace posewright {
 namespace {
 
+/// Cost of visiting the nodes in that order.
+double tour_cost(const Eigen::MatrixXd& cost, const std::vector<int>& order, bool closed) {
+  double sum = closed && order.size() > 1 ? cost(order.back(), order.front()) : 0.0;
+  for (std::size_t i = 1; i < order.size(); ++i) sum += cost(order[i - 1], order[i]);
+  return sum;
+}
+
 /// Largest coordinate difference of random points, as times of joints that move together are.
 Eigen::MatrixXd random_costs(int n, std::uint64_t seed) {
   Random random(seed, 0);

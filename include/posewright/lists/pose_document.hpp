@@ -79,9 +79,5 @@ std::vector<std::unique_ptr<PoseDocument>> read_documents(const std::vector<std:
 /// every point that motions lead to. Files of the program that lie beside it are read too.
 PoseList program_poses(const std::filesystem::path& path, const std::vector<Coordinate>& coordinates,
                        const DocumentOptions& options);
-/// A single one; `name` stands for the file.
-std::unique_ptr<PoseDocument> parse_document(std::string bytes, const std::string& name,
-                                             const std::vector<Coordinate>& coordinates,
-                                             const DocumentOptions& options);
 
 }  // namespace posewright

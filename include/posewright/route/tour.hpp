@@ -22,7 +22,4 @@ struct TourOptions {
 std::vector<int> cheapest_tour(const Eigen::MatrixXd& cost, const TourOptions& options);
 inline constexpr int exact_nodes = 12;
 
-/// Cost of visiting the nodes in that order.
-double tour_cost(const Eigen::MatrixXd& cost, const std::vector<int>& order, bool closed);
-
 }  // namespace posewright

@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "posewright/criterion/sensitivity.hpp"
 #include "posewright/criterion/summed_information.hpp"
 #include "posewright/support/dense.hpp"
 #include "regular.hpp"
@@ -97,12 +98,7 @@ class FunctionState : public DesignState {
     std::vector<int> order;
     for (int j = 0; j < int(d_.size()); ++j)
       if (blocked()[std::size_t(j)] == 0 && d_[std::size_t(j)] > threshold) order.push_back(j);
-    const auto before = [&](int a, int b) {
-      return d_[std::size_t(a)] != d_[std::size_t(b)] ? d_[std::size_t(a)] > d_[std::size_t(b)] : a < b;
-    };
-    const std::size_t keep = std::min(order.size(), most_evaluated);
-    std::partial_sort(order.begin(), order.begin() + std::ptrdiff_t(keep), order.end(), before);
-    order.resize(keep);
+    keep_largest(order, d_, most_evaluated);
     return order;
   }
 

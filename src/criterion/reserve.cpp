@@ -109,11 +109,7 @@ class ReserveState : public DesignState {
     std::vector<int> order;
     for (int j = 0; j < int(d_.size()); ++j)
       if (may_enter(j)) order.push_back(j);
-    const std::size_t keep = std::min(order.size(), most_evaluated_in_reserve);
-    std::partial_sort(order.begin(), order.begin() + std::ptrdiff_t(keep), order.end(), [&](int a, int b) {
-      return d_[std::size_t(a)] != d_[std::size_t(b)] ? d_[std::size_t(a)] > d_[std::size_t(b)] : a < b;
-    });
-    order.resize(keep);
+    keep_largest(order, d_, most_evaluated_in_reserve);
     return order;
   }
 

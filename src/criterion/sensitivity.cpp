@@ -41,4 +41,13 @@ void sensitivities(const BlockArray& blocks, const Eigen::MatrixXd& T, int threa
   pass(blocks, T, blocks.columns(), thread_count(threads), d);
 }
 
+void keep_largest(std::vector<int>& candidates, const std::vector<double>& d, std::size_t count) {
+  count = std::min(count, candidates.size());
+  std::partial_sort(candidates.begin(), candidates.begin() + std::ptrdiff_t(count), candidates.end(),
+                    [&](int a, int b) {
+                      return d[std::size_t(a)] != d[std::size_t(b)] ? d[std::size_t(a)] > d[std::size_t(b)] : a < b;
+                    });
+  candidates.resize(count);
+}
+
 }  // namespace posewright

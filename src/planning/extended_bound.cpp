@@ -27,11 +27,7 @@ BlockArray joined(const BlockArray& candidates, const std::vector<int>& kept, co
 std::vector<int> largest(const std::vector<double>& d, std::size_t count) {
   std::vector<int> order(d.size());
   std::iota(order.begin(), order.end(), 0);
-  count = std::min(count, order.size());
-  std::partial_sort(order.begin(), order.begin() + std::ptrdiff_t(count), order.end(), [&](int a, int b) {
-    return d[std::size_t(a)] != d[std::size_t(b)] ? d[std::size_t(a)] > d[std::size_t(b)] : a < b;
-  });
-  order.resize(count);
+  keep_largest(order, d, count);
   std::sort(order.begin(), order.end());
   return order;
 }

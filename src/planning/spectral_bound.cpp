@@ -125,9 +125,7 @@ class EigenvalueBound {
     const std::size_t top = std::size_t((options_.poses + options_.repeats - 1) / options_.repeats);
     order_.resize(value_.size());
     std::iota(order_.begin(), order_.end(), 0);
-    std::partial_sort(order_.begin(), order_.begin() + std::ptrdiff_t(top), order_.end(), [&](int a, int b) {
-      return value_[std::size_t(a)] != value_[std::size_t(b)] ? value_[std::size_t(a)] > value_[std::size_t(b)] : a < b;
-    });
+    keep_largest(order_, value_, top);
     double sum = first, most = 0.0;
     int left = options_.poses;
     for (std::size_t k = 0; k < top; ++k) {

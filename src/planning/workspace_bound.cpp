@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "posewright/criterion/sensitivity.hpp"
 #include "posewright/planning/ascent.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/parallel.hpp"
@@ -216,12 +217,7 @@ PlacePool first_pool(const BlockArray& blocks, const ApproximateDesign& design, 
                      std::size_t room) {
   std::vector<int> order(blocks.count());
   std::iota(order.begin(), order.end(), 0);
-  const auto kept = std::ptrdiff_t(std::min(order.size(), room));
-  std::partial_sort(order.begin(), order.begin() + kept, order.end(), [&](int a, int b) {
-    const double x = design.sensitivity[std::size_t(a)], y = design.sensitivity[std::size_t(b)];
-    return x != y ? x > y : a < b;
-  });
-  order.resize(std::size_t(kept));
+  keep_largest(order, design.sensitivity, room);
   order.insert(order.end(), design.support.begin(), design.support.end());
   std::sort(order.begin(), order.end());
   order.erase(std::unique(order.begin(), order.end()), order.end());

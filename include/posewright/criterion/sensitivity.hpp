@@ -19,4 +19,7 @@ void information_traces(const BlockArray& blocks, const Eigen::MatrixXd& inverse
 /// @param d  resized to blocks.count()
 void sensitivities(const BlockArray& blocks, const Eigen::MatrixXd& T, int threads, std::vector<double>& d);
 
+/// Keeps the candidates of largest d, largest first, equal ones by index: `count`, or as many as there are.
+void keep_largest(std::vector<int>& candidates, const std::vector<double>& d, std::size_t count);
+
 }  // namespace posewright

@@ -1,4 +1,4 @@
-# Rscript bench/peers/algdesign.R INSTANCE.csv N [RUNS] [forbid|allow]
+# Rscript bench/peers/algdesign.R INSTANCE.csv N [RUNS] [forbid or allow] [SEED] [ROWS]
 # Fedorov's exchange as AlgDesign has it (Wheeler 2004), on rows of a CSV file without header.
 source(file.path(dirname(sub("--file=", "", grep("--file=", commandArgs(FALSE), value = TRUE))), "common.R"))
 need("AlgDesign")

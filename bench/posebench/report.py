@@ -112,8 +112,8 @@ def page(rows, notes, sets):
                                                    AREA.format(f"Fit: {PROGRAM}."), robots_table(rows, PROGRAM)]),
                 ("Estimation", ["Error over the random median of plain least squares (area over ln N).", estimators_table(rows, "posewright"),
                                 estimators_table(rows, "random")]),
-                ("Design instances", ["Certified: against the bound that `posewright select` proves. Rows with a version are stored results of other machines: compare orders of "
-                                      "magnitude of their seconds, not digits.", instances_table(rows)]),
+                ("Design instances", ["Certified: against the bound that `posewright select` proves. Rows with a version are stored results. `docs/benchmarks.md` "
+                                      "has their machine, seeds and how they were built; compare seconds of another machine by orders of magnitude.", instances_table(rows)]),
                 ("Trust", [trust_table(rows)]),
                 ("Sets", [provenance(rows, sets)]),
                 ("What was skipped", skips)]

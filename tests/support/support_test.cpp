@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <stdexcept>
 
+#include "posewright/support/distributions.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/file.hpp"
 #include "posewright/support/parallel.hpp"
@@ -34,6 +35,13 @@ TEST(Sha256, IsTheSameByTheInstructionsOfTheProcessor) {
   }
 }
 #endif
+
+TEST(Distributions, ResidualsOfZeroAreExceededForSure) {
+  for (const double freedom : {1.0, 300.0, 400.0, 2000.0, 1e6})
+    for (const double value : {0.0, 1e-300, 1e-15})
+      // Below it are (value/2)^(freedom/2) / Γ(freedom/2 + 1) at most.
+      EXPECT_NEAR(chi_square_exceeded(value, freedom), 1.0, 1e-7) << value << " " << freedom;
+}
 
 TEST(Sha256, EqualsThePublishedVectors) {
   // NIST, examples of FIPS 180-4: one block, none, two blocks, many.

@@ -54,6 +54,11 @@ struct Plausible {
   double most;
   const char* text;
 };
+/// Of numbers without a unit: robots in millimetres and degrees stay below what can be.
+constexpr std::array<Plausible, 2> plain{{
+    {Quantity::length, 100, "100 m at most without a unit (is it mm?)"},
+    {Quantity::angle, 30, "30 rad at most without a unit (is it deg?)"},
+}};
 constexpr std::array<Plausible, 10> plausible{{
     {Quantity::length, 1e3, "1000 m at most (is it mm?)"},
     {Quantity::angle, 1e3, "1000 rad at most (is it deg?)"},
@@ -86,14 +91,21 @@ double take_number(std::string_view& text, const std::string& allowed) {
   return value;
 }
 
-/// A plain number is of the one kind that is accepted; of several, any of them will do.
+/// Limits of a value with a unit, or of a plain number, which is of one of the kinds that are accepted.
 void require_plausible(std::string_view text, double value, Quantity unit, std::initializer_list<Quantity> accepted) {
   const Plausible* widest = nullptr;
+  const auto widen = [&](const Plausible& limit) {
+    if (widest == nullptr || limit.most > widest->most) widest = &limit;
+  };
   for (const Plausible& limit : plausible) {
-    const bool meant = unit == Quantity::number
-                           ? std::find(accepted.begin(), accepted.end(), limit.quantity) != accepted.end()
-                           : limit.quantity == unit;
-    if (meant && (widest == nullptr || limit.most > widest->most)) widest = &limit;
+    if (unit != Quantity::number) {
+      if (limit.quantity == unit) widen(limit);
+      continue;
+    }
+    if (std::find(accepted.begin(), accepted.end(), limit.quantity) == accepted.end()) continue;
+    const auto* const less =
+        std::find_if(plain.begin(), plain.end(), [&](const Plausible& p) { return p.quantity == limit.quantity; });
+    widen(less != plain.end() ? *less : limit);
   }
   if (widest != nullptr && std::abs(value) > widest->most) fail(text, "is more than can be", widest->text);
 }

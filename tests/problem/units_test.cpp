@@ -34,6 +34,10 @@ TEST(Units, WrittenValueBecomesTheNearestSiValue) {
                         {"0.1 mrad", Quantity::angle, 1e-4},
                         {"1.5 rad", Quantity::angle, 1.5},
                         {"0.25", Quantity::angle, 0.25},
+                        {"-12.6", Quantity::angle, -12.6},
+                        {"75 rad", Quantity::angle, 75},
+                        {"80", Quantity::length, 80},
+                        {"800 m", Quantity::length, 800},
                         {"3 N", Quantity::force, 3},
                         {"1.5 kN", Quantity::force, 1500},
                         {"-2.5E+2", Quantity::number, -250},
@@ -81,6 +85,9 @@ TEST(Units, WrongTextIsRefusedWithTheReason) {
                            {"5 mm", Quantity::angle, "wrong unit 'mm'; allowed: rad, mrad, urad, deg"},
                            {"5 mm", Quantity::force, "wrong unit 'mm'; allowed: N, kN"},
                            {"5 mm", Quantity::number, "plain number"},
+                           {"180", Quantity::length, "100 m at most without a unit (is it mm?)"},
+                           {"-35", Quantity::angle, "30 rad at most without a unit (is it deg?)"},
+                           {"1001 m", Quantity::length, "1000 m at most (is it mm?)"},
                            {"1\nm", Quantity::length, "unknown unit '\\x0am'"}};
   for (const BadUnit& row : table) {
     try {

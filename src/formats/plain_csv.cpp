@@ -21,6 +21,15 @@ std::pair<std::string, std::string> name_and_unit(const std::string& header) {
           header.substr(open + 1, header.size() - open - 2)};
 }
 
+/// Tables of other countries have ';' between cells, and a comma in numbers.
+void require_commas(const std::vector<std::string>& header, const SourcePlace& place) {
+  if (header.size() != 1) return;
+  for (const auto& [mark, name] : {std::pair(';', "semicolons"), std::pair('\t', "tabs")})
+    if (header.front().find(mark) != std::string::npos)
+      throw InputError(place, fmt::format("has {} between its cells", name),
+                       "commas between cells, and a point in numbers, as in 1,12.5: save the table that way");
+}
+
 Exported write_plain_csv(const PoseSequence& all, const ExportOptions&) {
   const PoseSequence sequence = formats::to_measure(all);
   std::string text = "pose";
@@ -62,6 +71,7 @@ PoseTable read_csv_table(const std::string& bytes, const std::string& file) {
     if (line.empty() || line.front() == '#') continue;
     const std::vector<std::string> cells = csv_cells(line);
     if (table.names.empty()) {
+      require_commas(cells, {file, number});
       for (const std::string& cell : cells) {
         const auto [name, unit] = name_and_unit(cell);
         table.names.push_back(name);

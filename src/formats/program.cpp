@@ -103,7 +103,9 @@ class Axes {
       throw CannotDo(fmt::format(
           "{} has six turning axes, the plan {} joints ({}){}", rules_.format, sequence_.names.size(),
           fmt::join(sequence_.names, ", "),
-          rules_.axes.size() > turning_axes ? "; name the controller's axes in --controller FILE (axes)" : ""));
+          sequence_.names.size() < turning_axes ? "; no program for fewer axes is written, lists of poses are (csv)"
+          : rules_.axes.size() > turning_axes   ? "; name the controller's axes in --controller FILE (axes)"
+                                                : ""));
     for (std::size_t i = 0; i < turning_axes; ++i)
       if (index_of(rules_.axes[i]) < 0)
         throw CannotDo(fmt::format("{} needs axis {}: programs of robots with fewer than six axes are not written",

@@ -19,7 +19,7 @@ namespace posewright {
 namespace {
 
 /// Rows of a file of readings that look like no reading: a lost target as 0, 0, 0, a code such as −9999 for nothing,
-/// the numbers of the row before at other joints, an id that another configuration has.
+/// the numbers of an earlier row again, an id that another configuration has.
 class SuspiciousRows {
  public:
   explicit SuspiciousRows(const IdentificationModel& model) : model_(model) {}
@@ -32,13 +32,13 @@ class SuspiciousRows {
 
  private:
   void look_for_codes(int line, const Eigen::VectorXd& y);
+  void look_for_copies(int line, const std::vector<double>& q, const Eigen::VectorXd& y);
   bool moved(const std::vector<double>& from, const std::vector<double>& to) const;
 
   const IdentificationModel& model_;
-  std::map<std::string, std::vector<int>> lines_;      ///< of each kind
-  std::map<int, std::vector<double>> configurations_;  ///< of each id
-  std::vector<double> last_q_;
-  Eigen::VectorXd last_y_;
+  std::map<std::string, std::vector<int>> lines_;                                ///< of each kind
+  std::map<int, std::vector<double>> configurations_;                            ///< of each id
+  std::multimap<double, std::pair<std::vector<double>, Eigen::VectorXd>> rows_;  ///< by the sum of their readings
 };
 
 constexpr std::size_t most_lines = 5;
@@ -80,16 +80,31 @@ void SuspiciousRows::look_for_codes(int line, const Eigen::VectorXd& y) {
   }
 }
 
+/// Some readings of noise are never the same to the last digit; one or two are, as of a touch or a gauge.
+void SuspiciousRows::look_for_copies(int line, const std::vector<double>& q, const Eigen::VectorXd& y) {
+  if (y.array().isFinite().count() < 3) return;
+  double sum = 0;
+  for (const double value : y)
+    if (std::isfinite(value)) sum += value;
+  const auto [first, last] = rows_.equal_range(sum);
+  for (auto at = first; at != last; ++at) {
+    const auto& [joints, readings] = at->second;
+    if (!same_numbers(readings, y)) continue;
+    lines_[moved(joints, q) ? "the readings of an earlier row, at other joints: was the instrument read again?"
+                            : "a copy of an earlier row? It counts as one more reading: leave it out"]
+        .push_back(line);
+    return;
+  }
+  rows_.emplace(sum, std::pair(q, y));
+}
+
 void SuspiciousRows::add(int id, int line, const std::vector<double>& q, const Eigen::VectorXd& y) {
   look_for_codes(line, y);
-  if (!last_q_.empty() && same_numbers(last_y_, y) && moved(last_q_, q))
-    lines_["the readings of the row before, at other joints: was the instrument read again?"].push_back(line);
+  look_for_copies(line, q, y);
   if (id > 0) {
     const auto [known, added] = configurations_.emplace(id, q);
     if (!added && moved(known->second, q)) lines_["an id that another configuration has"].push_back(line);
   }
-  last_q_ = q;
-  last_y_ = y;
 }
 
 std::vector<std::string> SuspiciousRows::notes(const std::string& file) const {

@@ -325,6 +325,7 @@ TEST(RobotPrograms, RefuseWhatWouldBeWrong) {
            {"kuka-krl", "axes: [A1, A2]", nothing, "r.yaml:1: axes has 2 names; the plan has 6 joints"},
            {"kuka-krl", "", slide, "kuka-krl: axis A3 turns, joint 'joint_a3' slides; name external axes"},
            {"fanuc-tp", "", slide, "fanuc-tp: axis J3 turns, joint 'joint_a3' slides"},
+           {"kuka-krl", "", five, "joint_a5); no program for fewer axes is written, lists of poses are (csv)"},
            {"staubli-val3", "", five, "staubli-val3 has six turning axes, the plan 5 joints (joint_a1, joint_a2"},
            {"urscript", "", [](PoseSequence&s, ExportOptions&) { s.poses[1].values[3] = -6.3; },
             "urscript: P2 turns wrist1 to -6.3000 rad; the controller takes -2 pi to 2 pi"},

@@ -49,6 +49,8 @@ TEST(PoseLists, BadListsNameTheLineAndWhatIsAllowed) {
            {"robodk-csv", "J1,J2\n1,2\n1\n", "f:3: has 1 numbers; the rows before have 2"},
            {"robodk-csv", "1,2\n1,a\n", "f:2: 'a' is not a number"},
            {"robodk-csv", "\n", "f: has no poses"},
+           {"csv", "# of a table\nid;a [deg]\n1;2,5\n", "f:2: has semicolons between its cells; commas between cells"},
+           {"csv", "id\ta\n1\t2\n", "f:1: has tabs between its cells"},
            {"csv", "a,b\n1\n", "f:2: has 1 cells; the header has 2"},
            {"json", "{\"schema\": \"posewright/plan/9\", \"poses\": []}",
             "has schema 'posewright/plan/9'; allowed: posewright/plan/1"},

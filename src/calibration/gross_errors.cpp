@@ -2,8 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
+#include <variant>
 
 #include "posewright/calibration/placing_columns.hpp"
+#include "posewright/model/board_pose.hpp"
+#include "posewright/model/placement.hpp"
 #include "posewright/support/dense.hpp"
 #include "posewright/support/error.hpp"
 #include "robust_weights.hpp"
@@ -37,9 +42,45 @@ std::vector<double> sizes_of(const IdentificationModel& model, const std::vector
   return sizes;
 }
 
+/// Corrections of the board at one pose that put it where its picture shows it, all others nominal; those of all poses
+/// if there is no board in the picture.
+std::vector<double> as_pictured(const MeasurementSpec& measurement, const IdentificationModel& model,
+                                const MeasuredPose& pose, const std::vector<double>& correction) {
+  const auto* camera = std::get_if<CameraMeasurement>(&measurement.instrument);
+  const std::optional<Eigen::Isometry3d> seen = camera != nullptr ? board_pose(*camera, pose.y) : std::nullopt;
+  if (!seen) return correction;
+  const Eigen::Isometry3d tip = model.tool_pose(pose.q);
+  const Eigen::Isometry3d carrier = camera->on_hand ? tip : tip.inverse();
+  const Eigen::Isometry3d moved = isometry(camera->board).inverse() * carrier * isometry(camera->camera) * *seen;
+  const Eigen::Vector3d zyx = moved.linear().eulerAngles(2, 1, 0);
+  const std::map<std::string, double> board = {{"board.x", moved.translation().x()},
+                                               {"board.y", moved.translation().y()},
+                                               {"board.z", moved.translation().z()},
+                                               {"board.rx", zyx[2]},
+                                               {"board.ry", zyx[1]},
+                                               {"board.rz", zyx[0]}};
+  std::vector<double> there(model.parameters().size(), 0.0);
+  for (std::size_t i = 0; i < there.size(); ++i)
+    if (const auto at = board.find(model.parameters()[i].name); at != board.end()) there[i] = at->second;
+  return there;
+}
+
+/// One pose below the other, each at its own corrections.
+Eigen::MatrixXd rows_at(const IdentificationModel& model, const VariantColumns& columns,
+                        const std::vector<MeasuredPose>& poses, const std::vector<std::vector<double>>& corrections) {
+  Eigen::MatrixXd rows;
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const Eigen::MatrixXd block = blocks_of(model, columns, {poses[k]}, corrections[k]).all();
+    if (k == 0) rows.resize(block.rows() * Eigen::Index(poses.size()), block.cols());
+    rows.middleRows(Eigen::Index(k) * block.rows(), block.rows()) = block;
+  }
+  return rows;
+}
+
 /// Whitened readings, one pose below the other, by every tolerance of the robot and the instrument.
 Eigen::MatrixXd tolerance_rows(const IdentificationModel& model, const VariantColumns& columns,
-                               const std::vector<MeasuredPose>& poses, const std::vector<double>& correction) {
+                               const std::vector<MeasuredPose>& poses,
+                               const std::vector<std::vector<double>>& corrections) {
   VariantColumns all;
   for (int i = 0; i < int(model.parameters().size()); ++i) {
     const auto at = std::ranges::find(columns.selected, i);
@@ -49,17 +90,17 @@ Eigen::MatrixXd tolerance_rows(const IdentificationModel& model, const VariantCo
     all.selected.push_back(i);
     all.parameters.push_back(p);
   }
-  return blocks_of(model, all, poses, correction).all() * tolerances_of(all).asDiagonal();
+  return rows_at(model, all, poses, corrections) * tolerances_of(all).asDiagonal();
 }
 
 /// Part of them that is left where base, tool and targets are fitted: those take up most of a lens's centre, a first
 /// joint's zero, a last joint's frame.
 Eigen::MatrixXd beside_placing(const IdentificationModel& model, const VariantColumns& columns,
-                               const std::vector<MeasuredPose>& poses, const std::vector<double>& correction,
-                               const Eigen::MatrixXd& rows) {
+                               const std::vector<MeasuredPose>& poses,
+                               const std::vector<std::vector<double>>& corrections, const Eigen::MatrixXd& rows) {
   const VariantColumns place = placing_columns(columns);
   if (place.selected.empty() || Eigen::Index(place.selected.size()) >= rows.rows()) return rows;
-  return ResidualProjector(blocks_of(model, place, poses, correction).all()).left(rows);
+  return ResidualProjector(rows_at(model, place, poses, corrections)).left(rows);
 }
 
 /// Root mean square of the readings of each pose, with the noise.
@@ -156,7 +197,7 @@ class Trimming {
 
 std::vector<double> explained_sizes(const IdentificationModel& model, const VariantColumns& columns,
                                     const std::vector<MeasuredPose>& poses, const std::vector<double>& correction) {
-  return sizes_of_rows(tolerance_rows(model, columns, poses, correction), poses);
+  return sizes_of_rows(tolerance_rows(model, columns, poses, {poses.size(), correction}), poses);
 }
 
 double residual_rms(const IdentificationModel& model, const std::vector<MeasuredPose>& poses,
@@ -164,10 +205,13 @@ double residual_rms(const IdentificationModel& model, const std::vector<Measured
   return rms_of_all(sizes_of(model, correction, poses), poses);
 }
 
-double explained_rms(const IdentificationModel& model, const VariantColumns& columns,
-                     const std::vector<MeasuredPose>& poses, const std::vector<double>& correction) {
-  const Eigen::MatrixXd rows = tolerance_rows(model, columns, poses, correction);
-  return rms_of_all(sizes_of_rows(beside_placing(model, columns, poses, correction, rows), poses), poses);
+double explained_rms(const MeasurementSpec& measurement, const IdentificationModel& model,
+                     const VariantColumns& columns, const std::vector<MeasuredPose>& poses,
+                     const std::vector<double>& correction) {
+  std::vector<std::vector<double>> corrections;
+  for (const MeasuredPose& pose : poses) corrections.push_back(as_pictured(measurement, model, pose, correction));
+  const Eigen::MatrixXd rows = tolerance_rows(model, columns, poses, corrections);
+  return rms_of_all(sizes_of_rows(beside_placing(model, columns, poses, corrections, rows), poses), poses);
 }
 
 std::vector<GrossPose> gross_poses(const IdentificationModel& model, const VariantColumns& columns,

@@ -190,8 +190,9 @@ void StackedReadings::weigh(const Eigen::VectorXd& x, Weighting weighting) {
     const Eigen::MatrixXd covariance = linearisation_.covariance(read, read);
     root_[k].compute(covariance);
     if (root_[k].info() != Eigen::Success)
-      throw CannotDo("measurement: the noise covariance of pose " + std::to_string(poses_[k].id) +
-                     " is not positive definite");
+      throw CannotDo("the fit puts pose " + std::to_string(poses_[k].id) +
+                     " where its readings have no noise covariance: check units, signs, zeros and order of the joints, "
+                     "and the order of rows");
   }
   if (weighting == Weighting::ordinary) use_one_variance_per_unit();
   if (effect_ != nullptr) find_features();

@@ -108,13 +108,34 @@ TEST(Verdict, APoseWithALostTargetIsNamedBeforeAnythingIsFitted) {
   EXPECT_LT(*std::min_element(c.fit.weights[4].begin(), c.fit.weights[4].end()), 0.01);
 }
 
+TEST(Verdict, TargetsThatWereReadAsEachOtherAreNamed) {
+  VirtualFile data("kr270/problem.yaml", 20);
+  const auto exchange = [&](std::size_t k, Eigen::Index a, Eigen::Index b) {
+    const Eigen::Vector3d kept = data.poses[k].y.segment<3>(3 * a);
+    data.poses[k].y.segment<3>(3 * a) = data.poses[k].y.segment<3>(3 * b);
+    data.poses[k].y.segment<3>(3 * b) = kept;
+  };
+  exchange(4, 0, 1);
+  exchange(11, 0, 1);
+  exchange(11, 1, 2);
+  data.write();
+  EXPECT_THAT(message_of<CannotDo>([&] { calibrate_problem(data.problem, data.options(), Monitor{}); }),
+              testing::AllOf(HasSubstr("mixed up at poses 5 (P1, P2, P3 are P2, P1, P3), "
+                                       "12 (P1, P2, P3 are P2, P3, P1): only so")));
+  CalibrateOptions robust = data.options();
+  robust.weighting = Weighting::robust;
+  EXPECT_TRUE(calibrate_problem(data.problem, robust, Monitor{}).fit.converged);
+}
+
 TEST(Verdict, RowsThatLookLikeNoReadingAreNoted) {
   VirtualFile data("kr270/problem.yaml", 12);
-  data.poses[7].y = data.poses[6].y;
+  data.poses[7].y = data.poses[4].y;
   data.poses[9].id = data.poses[2].id;
+  data.poses.push_back(data.poses[1]);
   data.write();
   const MeasuredData read = read_measured_data(data.options().data, data.problem, *data.model);
-  EXPECT_THAT(read.notes, testing::UnorderedElementsAre(HasSubstr("data.csv:9: the readings of the row before"),
+  EXPECT_THAT(read.notes, testing::UnorderedElementsAre(HasSubstr("data.csv:9: the readings of an earlier row"),
+                                                        HasSubstr("data.csv:14: a copy of an earlier row"),
                                                         HasSubstr("data.csv:11: an id that another configuration")));
 }
 
@@ -294,6 +315,41 @@ TEST(Verdict, AnEffectThatMostOfTheResidualsAreLeavesNoIntervalToWhatItMoves) {
     given += p.given.empty() ? 0 : 1;
   }
   EXPECT_GT(given, 0);
+}
+
+/// Verdict of a camera's place from these columns, and what was named.
+std::string told_of(VirtualFile& data) {
+  data.write();
+  CalibrateOptions options = data.options();
+  options.variant = "hand_eye";
+  try {
+    const Calibration c = calibrate_problem(data.problem, options, Monitor{});
+    return c.verdict == Verdict::use_it ? "use it" : "not used";
+  } catch (const CannotDo& error) {
+    return error.what();
+  }
+}
+
+/// Wrong columns put the board behind the camera, where derivatives have no limit and seem to explain any residual.
+TEST(Verdict, NoPlaceOfACameraComesFromJointsThatAreMixedUp) {
+  const auto told = [](auto&& mix_up) {
+    VirtualFile data("instruments/camera_on_hand.yaml", 10);
+    for (MeasuredPose& pose : data.poses) mix_up(pose.q);
+    return told_of(data);
+  };
+  EXPECT_EQ(told([](auto&) {}), "use it");
+  EXPECT_THAT(told([](auto& q) {
+                for (double& value : q) value *= 180 / std::numbers::pi;
+              }),
+              HasSubstr("are degrees"));
+  EXPECT_NE(told([](auto& q) { std::swap(q[1], q[3]); }), "use it");
+  EXPECT_NE(told([](auto& q) { q[2] = -q[2]; }), "use it");
+}
+
+TEST(Verdict, ReadingsWithoutNoiseAreUsed) {
+  VirtualFile data("instruments/camera_on_hand.yaml", 15, 0.0);
+  read_poses_of(*data.model, std::vector<double>(data.truth.size(), 0.0), 0.0, data.random, data.poses);
+  EXPECT_EQ(told_of(data), "use it");
 }
 
 TEST(Verdict, ABoardOfAnotherSizeIsToldFromAFocalLength) {

@@ -16,10 +16,13 @@ std::vector<double> explained_sizes(const IdentificationModel& model, const Vari
 double residual_rms(const IdentificationModel& model, const std::vector<MeasuredPose>& poses,
                     const std::vector<double>& correction);
 
-/// Root mean square that noise and all tolerances explain where base, tool and targets are fitted, at least 1.
+/// Root mean square that noise and all tolerances explain where base, tool and targets are fitted, at least 1. Boards
+/// of a camera stand where each picture shows them: a wrong convention puts them behind the camera or beside the
+/// picture, where points and lens have derivatives without limit.
 /// @param columns  those that are estimated, whose tolerances may be stated
-double explained_rms(const IdentificationModel& model, const VariantColumns& columns,
-                     const std::vector<MeasuredPose>& poses, const std::vector<double>& correction);
+double explained_rms(const MeasurementSpec& measurement, const IdentificationModel& model,
+                     const VariantColumns& columns, const std::vector<MeasuredPose>& poses,
+                     const std::vector<double>& correction);
 
 /// Residuals against what explains them: residual_rms() and explained_rms().
 struct ResidualSize {

@@ -63,11 +63,13 @@ class CalibrationRun {
     if (!campaigns_.empty()) all = with_campaign_columns(*model_, all);
     fit_options.components = result_.prior != Prior::none;
     fit_options.limits = frame_limits(*model_, all, result_.prior);
-    place(all, fit_options);
-    choose_columns(all);
-    leave_at_nominal_values(all, fit_options.start);
-    fit_options.limits = frame_limits(*model_, columns_, result_.prior, placed_);
-    place_again(fit_options);
+    refuse_mixed_targets(problem_.measurement, fitted_, options_.weighting);
+    try {
+      choose_and_place(all, fit_options);
+    } catch (const CannotDo&) {
+      refuse_unplaced(problem_, *model_, fitted_, orientation_);
+      throw;
+    }
     refuse_gross_poses(*model_, columns_, fitted_, placed_, fit_options, result_.notes);
     refuse_conventions(problem_, *model_, columns_, fitted_, placed_, orientation_);
     if (options_.estimate_alone) {
@@ -98,7 +100,7 @@ class CalibrationRun {
   }
 
  private:
-  CalibratedPoses poses() const { return {*model_, columns_, fitted_, held_back_, placed_}; }
+  CalibratedPoses poses() const { return {problem_.measurement, *model_, columns_, fitted_, held_back_, placed_}; }
 
   void expect() {
     // Nothing else depends on a workspace that cannot be drawn from.
@@ -271,6 +273,15 @@ class CalibrationRun {
     take_canonical_angles(*model_, all, placed_);
     fit_options.start = placed_;
     model_->take_loads_at(placed_);
+  }
+
+  /// Where base, tool and targets are, and what the readings determine there.
+  void choose_and_place(const VariantColumns& all, FitOptions& fit_options) {
+    place(all, fit_options);
+    choose_columns(all);
+    leave_at_nominal_values(all, fit_options.start);
+    fit_options.limits = frame_limits(*model_, columns_, result_.prior, placed_);
+    place_again(fit_options);
   }
 
   /// Reference of the estimate: columns of base, tool and targets alone.

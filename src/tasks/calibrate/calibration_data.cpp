@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "posewright/calibration/gross_errors.hpp"
+#include "posewright/calibration/mixed_targets.hpp"
 #include "posewright/model/instrument_view.hpp"
 #include "posewright/support/error.hpp"
 #include "posewright/support/table.hpp"
@@ -141,6 +142,27 @@ CalibrationData read_calibration_data(const Problem& problem, const CalibrateOpt
   return all;
 }
 
+void refuse_mixed_targets(const MeasurementSpec& measurement, const std::vector<MeasuredPose>& poses,
+                          Weighting weighting) {
+  const auto* points = std::get_if<PointsMeasurement>(&measurement.instrument);
+  if (points == nullptr || points->components.size() != 3 || measurement.loaded_minus_unloaded ||
+      weighting == Weighting::robust)
+    return;
+  std::vector<std::string> names;
+  for (const TargetSpec& target : points->targets) names.push_back(target.name);
+  const std::vector<MixedTargets> mixed = mixed_targets(names, poses);
+  if (mixed.empty()) return;
+  std::string list;
+  for (std::size_t k = 0; k < std::min(most_listed, mixed.size()); ++k)
+    list += fmt::format("{}{} ({} are {})", k == 0 ? "" : ", ", mixed[k].id, fmt::join(names, ", "),
+                        fmt::join(mixed[k].are, ", "));
+  if (mixed.size() > most_listed) list += fmt::format(" and {} more", mixed.size() - most_listed);
+  throw CannotDo(
+      fmt::format("targets are mixed up at pose{} {}: only so they are as far from each other as at the other "
+                  "poses. Exchange their readings, or use --weights robust",
+                  mixed.size() == 1 ? "" : "s", list));
+}
+
 void refuse_gross_poses(const IdentificationModel& model, const VariantColumns& columns,
                         const std::vector<MeasuredPose>& poses, const std::vector<double>& placed, FitOptions options,
                         const std::vector<std::string>& notes) {
@@ -160,12 +182,9 @@ void refuse_gross_poses(const IdentificationModel& model, const VariantColumns& 
                   gross.size() == 1 ? "" : "s", list, gross.front().explained, noted));
 }
 
-void refuse_conventions(const Problem& problem, const IdentificationModel& model, const VariantColumns& columns,
-                        const std::vector<MeasuredPose>& poses, const std::vector<double>& placed,
-                        const OrientationForm& orientation) {
-  const ResidualSize size{residual_rms(model, poses, placed), explained_rms(model, columns, poses, placed)};
-  if (!size.unusual()) return;
-  const ConventionSearch search = find_conventions(problem, model, poses, orientation);
+namespace {
+
+void refuse_found(const ConventionSearch& search) {
   if (search.found.empty()) return;
   std::string list;
   for (const Convention& convention : search.found)
@@ -173,6 +192,21 @@ void refuse_conventions(const Problem& problem, const IdentificationModel& model
                         convention.condition, convention.remedy);
   throw CannotDo(fmt::format("base and tool alone leave {}, too much for errors of a robot, and {}",
                              shown_value(search.left, "m"), list));
+}
+
+}  // namespace
+
+void refuse_conventions(const Problem& problem, const IdentificationModel& model, const VariantColumns& columns,
+                        const std::vector<MeasuredPose>& poses, const std::vector<double>& placed,
+                        const OrientationForm& orientation) {
+  const ResidualSize size{residual_rms(model, poses, placed),
+                          explained_rms(problem.measurement, model, columns, poses, placed)};
+  if (size.unusual()) refuse_found(find_conventions(problem, model, poses, orientation));
+}
+
+void refuse_unplaced(const Problem& problem, const IdentificationModel& model, const std::vector<MeasuredPose>& poses,
+                     const OrientationForm& orientation) {
+  refuse_found(find_conventions(problem, model, poses, orientation));
 }
 
 }  // namespace posewright

@@ -41,9 +41,17 @@ void refuse_gross_poses(const IdentificationModel& model, const VariantColumns& 
                         const std::vector<MeasuredPose>& poses, const std::vector<double>& placed, FitOptions options,
                         const std::vector<std::string>& notes);
 
+/// Throws CannotDo with the poses at which targets were read as each other.
+void refuse_mixed_targets(const MeasurementSpec& measurement, const std::vector<MeasuredPose>& poses,
+                          Weighting weighting);
+
 /// Throws CannotDo with the convention that the file does not keep: parameters would bend the robot to it.
 void refuse_conventions(const Problem& problem, const IdentificationModel& model, const VariantColumns& columns,
                         const std::vector<MeasuredPose>& poses, const std::vector<double>& placed,
                         const OrientationForm& orientation);
+
+/// The same where base and tool could not be fitted at all; nothing if no convention explains it.
+void refuse_unplaced(const Problem& problem, const IdentificationModel& model, const std::vector<MeasuredPose>& poses,
+                     const OrientationForm& orientation);
 
 }  // namespace posewright

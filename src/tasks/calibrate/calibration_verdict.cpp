@@ -21,6 +21,8 @@ namespace {
 constexpr double hopeless_curvature = 10.0;
 // Predictions whose σ is so many times what base and tool alone leave are worse than these.
 constexpr double hopeless_predictions = 3.0;
+// Residuals of a pose, against those of the middle one.
+constexpr double stands_out = 3.0;
 // Less is no reason to refuse, however significant.
 constexpr double worth_a_refusal = 1.02;
 
@@ -48,15 +50,29 @@ VariantColumns with_usual_tolerances(const CalibratedPoses& poses) {
   return columns;
 }
 
+/// ", most at pose 5" where one pose stands out.
+std::string worst_pose(const CalibratedPoses& poses, const std::vector<double>& correction) {
+  std::vector<double> sizes;
+  for (const MeasuredPose& pose : poses.fitted) sizes.push_back(residual_rms(poses.model, {pose}, correction));
+  const auto worst = std::ranges::max_element(sizes);
+  if (sizes.size() < 3) return "";
+  const int id = poses.fitted[std::size_t(worst - sizes.begin())].id;
+  const double largest = *worst;
+  std::ranges::nth_element(sizes, sizes.begin() + std::ptrdiff_t(sizes.size() / 2));
+  return largest > stands_out * sizes[sizes.size() / 2] ? fmt::format(", most at pose {}", id) : "";
+}
+
 void refuse_residuals(const CalibratedPoses& poses, Calibration& c) {
   // The scale counts the parameters.
-  const ResidualSize size{c.fit.scale,
-                          explained_rms(poses.model, with_usual_tolerances(poses), poses.fitted, c.fit.correction)};
-  if (!size.beyond_robots()) return;
-  c.refusals.push_back(
-      fmt::format("residuals are {:.3g} times the stated noise; noise and tolerances explain {:.3g} times. Check "
-                  "units, signs and zeros of the joints, and the order of rows, targets and angles",
-                  size.found, size.explained));
+  const ResidualSize size{c.fit.scale, explained_rms(poses.measurement, poses.model, with_usual_tolerances(poses),
+                                                     poses.fitted, c.fit.correction)};
+  if (!size.unusual()) return;
+  const std::string found =
+      fmt::format("residuals are {:.3g} times the stated noise{}; noise and tolerances explain {:.3g} times. Check ",
+                  size.found, worst_pose(poses, c.fit.correction), size.explained);
+  if (size.beyond_robots())
+    c.refusals.push_back(found + "units, signs and zeros of the joints, and the order of rows, targets and angles");
+  else c.notes.push_back(found + "zeros of the joints and single poses, or estimate more parameters");
 }
 
 /// An estimate that nothing can test.
@@ -102,8 +118,9 @@ void refuse_wide_predictions(const CalibratedPoses& poses, Calibration& c) {
   if (at.empty()) return;
   const Eigen::MatrixXd J = blocks_of(poses.model, poses.columns, at, poses.placed).all();
   const double sigma = std::sqrt((J * c.fit.covariance).cwiseProduct(J).sum() / double(J.rows()));
+  // Readings without noise leave nothing; what the stated noise leaves is the least that errors are compared with.
   const double left =
-      residual_rms(poses.model, poses.fitted, poses.placed) * std::sqrt(1 + placing_variance(poses, at));
+      std::max(1.0, residual_rms(poses.model, poses.fitted, poses.placed)) * std::sqrt(1 + placing_variance(poses, at));
   if (!(sigma > hopeless_predictions * left)) return;
   c.refusals.push_back(
       fmt::format("between the measured poses the estimate errs by {:.3g} times the stated noise (1σ), base and tool "

@@ -11,6 +11,7 @@ namespace posewright {
 
 /// The poses of a calibration and what they are judged at.
 struct CalibratedPoses {
+  const MeasurementSpec& measurement;
   const IdentificationModel& model;
   const VariantColumns& columns;
   const std::vector<MeasuredPose>&fitted, &held_back;

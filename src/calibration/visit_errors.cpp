@@ -172,7 +172,11 @@ VisitErrors visit_errors(const IdentificationModel& model, const Repeatability& 
   const int told = unknown.count() - 1;
   const Search noise(likelihood, {}, squares), with_noise(likelihood, unknown, squares);
   result.probability = chance(noise, with_noise, told);
-  result.contradiction = chance(with_noise, Search(likelihood, {true, {true, true}}, squares), 2 - told);
+  const Search all(likelihood, {true, {true, true}}, squares);
+  result.contradiction = chance(with_noise, all, 2 - told);
+  for (const int part : {0, 1})
+    result.together[part] = std::hypot(std::sqrt(all.noise()) * (part == 0 ? stated.translation : stated.rotation),
+                                       likelihood.unit(part) * std::sqrt(all.visits(part)));
   // As in the fit, the noise is as stated until chance refuses that.
   const Search as_stated(likelihood, {false, {unknown.visits[0], unknown.visits[1]}}, squares);
   const Search& found = chance(as_stated, with_noise, 1) < refused_noise ? with_noise : as_stated;

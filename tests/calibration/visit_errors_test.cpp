@@ -133,6 +133,10 @@ TEST_F(Visits, ThatAreStatedTooSmallAreNamedAndKept) {
                                           options_, Monitor{});
   EXPECT_FALSE(c.visits);
   EXPECT_THAT(c.notes, Contains(HasSubstr("the readings contradict the stated repeatability")));
+  for (const std::string& note : c.notes)
+    if (const auto at = note.find("more, about "); at != note.npos) {
+      EXPECT_NEAR(std::stod(note.substr(at + 12)), 0.3, 0.06) << note;
+    }
   EXPECT_GT(c.fit.noise_factor, 1.5);
   const Calibration right = calibrate_problem(told, options_, Monitor{});
   EXPECT_THAT(right.notes, Not(Contains(HasSubstr("contradict the stated repeatability"))));

@@ -11,6 +11,7 @@ struct VisitErrors {
   double noise = 1.0;          ///< factor of the stated 1σ beside them, at least 1
   double probability = 1.0;    ///< that chance alone gives as large a gain of the likelihood
   double contradiction = 1.0;  ///< that chance makes the visits err so much more than is stated; 1: nothing is stated
+  double together[2] = {0.0, 0.0};  ///< all of displacement and rotation, as if nothing were stated
 
   bool shown() const { return probability < seldom; }
   bool contradicts() const { return contradiction < seldom; }

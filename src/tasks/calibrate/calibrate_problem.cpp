@@ -190,7 +190,7 @@ class CalibrationRun {
     std::unique_ptr<IdentificationModel> as_stated = std::exchange(model_, nullptr);
     const auto found = [&] { return visit_errors(*as_stated, stated, columns_, fitted_, result_.fit, result_.prior); };
     VisitErrors visits = found();
-    if (visits.contradicts()) contradicted_visits_ = visits.contradiction;
+    if (visits.contradicts()) contradicted_visits_ = visits;
     if (!visits.shown()) {
       model_ = std::move(as_stated);
       return false;
@@ -220,11 +220,7 @@ class CalibrationRun {
   }
 
   void note_visits() {
-    if (contradicted_visits_)
-      note(
-          fmt::format("the readings contradict the stated repeatability (p {:.2g}): targets of a pose err together by "
-                      "more; the stated value is kept",
-                      *contradicted_visits_));
+    if (contradicted_visits_) note(note_of_contradiction(*contradicted_visits_));
     note(note_of_visits(result_.visits));
   }
 
@@ -471,7 +467,7 @@ class CalibrationRun {
   GivenParameters given_;
   std::vector<double> placed_;
   ProfiledColumns profiled_;
-  std::optional<double> contradicted_visits_;  ///< chance that the stated repeatability gives the readings
+  std::optional<VisitErrors> contradicted_visits_;  ///< where the stated repeatability does not give the readings
   std::vector<RepeatedReadings> repeated_;
   OrientationForm orientation_{};
   Calibration result_;

@@ -295,6 +295,14 @@ std::string note_of_visits(const std::optional<VisitErrors>& visits) {
       fmt::join(parts, ", "));
 }
 
+std::string note_of_contradiction(const VisitErrors& visits) {
+  return fmt::format(
+      "the readings contradict the stated repeatability (p {:.2g}): targets of a pose err together by more, about {} "
+      "and "
+      "{}; the stated value is kept, and intervals are too small: state what is right",
+      visits.contradiction, shown_value(visits.together[0], "m"), shown_value(visits.together[1], "rad"));
+}
+
 std::string note_of_instruments(const std::vector<InstrumentResiduals>& instruments) {
   std::vector<std::string> parts;
   for (const InstrumentResiduals& one : instruments) {

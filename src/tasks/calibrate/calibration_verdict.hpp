@@ -35,6 +35,9 @@ std::string note_of_step(const std::optional<FrameStep>& step);
 /// Displacements of every visit that the estimate counts though nobody stated them; empty without.
 std::string note_of_visits(const std::optional<VisitErrors>& visits);
 
+/// A stated repeatability that the readings contradict, with what they show.
+std::string note_of_contradiction(const VisitErrors& visits);
+
 /// Instruments that count with a larger noise than stated, and those whose readings make predictions of the others'
 /// poses worse; empty without.
 std::string note_of_instruments(const std::vector<InstrumentResiduals>& instruments);

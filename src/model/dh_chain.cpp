@@ -11,9 +11,10 @@
 namespace posewright {
 namespace {
 
-// Axes closer than this (sine of their angle) count as parallel: rounded URDFs (3.1416) are 1e-5 off, and a common
-// normal of almost parallel axes lies anywhere. Lines closer than this (m) coincide.
-constexpr double parallel = 1e-3, coincident = 1e-7;
+// Axes closer than this (sine of their angle) count as parallel: rounded URDFs (3.1416) are 1e-5 off, calibrated axes a
+// tenth of a degree, and a common normal of almost parallel axes lies anywhere, hundreds of metres away. Lines closer
+// than this (m) coincide.
+constexpr double parallel = 2e-2, coincident = 1e-7;
 
 struct Axis {
   Eigen::Vector3d point, direction;

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "posewright/model/serial_chain.hpp"
 #include "posewright/model/urdf_reader.hpp"
 #include "posewright/support/error.hpp"
@@ -70,6 +72,17 @@ TEST(DhTable, OfAPlanarArmHasItsLinkLengthsAndHayatisAngle) {
   const DhTable proximal = dh_table(arm, {}, Convention::frames, {}, DhConvention::proximal);
   EXPECT_NEAR(proximal.rows[1].a, 0.4, 1e-15);
   EXPECT_NEAR(proximal.rows[2].a, 0.3, 1e-15);
+  // As a calibration leaves them: no row goes to where the axes meet.
+  for (const double tilt : {1e-4, 2e-3, 1e-2})
+    for (const DhConvention convention : tables) {
+      const DhTable tilted =
+          dh_table(arm, {}, Convention::frames, {{"j2.ry", "rad", 0, tilt}, {"j3.rx", "rad", 0, tilt}}, convention);
+      EXPECT_LT(tilted.X_LastTip.translation().norm(), 0.1) << tilt;
+      for (const DhRow& row : tilted.rows) {
+        EXPECT_LT(std::abs(row.d), 0.1) << tilt;
+        EXPECT_LT(row.a, 0.41) << tilt;
+      }
+    }
 }
 
 TEST(DhTable, NamesGearsAndSpringsAsLeftOut) {

@@ -19,6 +19,8 @@ constexpr int most_steps = 60;
 // No joint moves further in one step, rad or m: what is linear in J does not hold beyond.
 constexpr double longest_step = 0.3;
 constexpr double first_damping = 1e-3, least_damping = 1e-7, most_damping = 1e2;
+// Rad that the tip turns for one of a joint: near a singularity joints would move far for a small turn.
+constexpr double worth_a_turn = 0.1;
 // A commanded value at a limit differs from it by rounding.
 constexpr double limit_rounding = 1e-9;
 
@@ -133,12 +135,28 @@ bool CommandSolver::evaluate(Work& w) const {
   return w.e.allFinite();
 }
 
+/// The change of u for the position that turns the tip as near as it can, of an arm that has no axes for both.
+void CommandSolver::step_for_position(Work& w) const {
+  const Eigen::Index n = w.J.cols();
+  const auto turn = w.J.bottomRows<3>();
+  Eigen::MatrixXd system = Eigen::MatrixXd::Zero(n + 3, n + 3);
+  system.topLeftCorner(n, n) = turn.transpose() * turn;
+  system.topLeftCorner(n, n).diagonal().array() += worth_a_turn * worth_a_turn;
+  system.topRightCorner(n, 3) = w.J.topRows<3>().transpose();
+  system.bottomLeftCorner(3, n) = w.J.topRows<3>();
+  Eigen::VectorXd wanted(n + 3);
+  wanted << turn.transpose() * w.e.tail<3>() + worth_a_turn * worth_a_turn * (w.first - w.u), w.e.head<3>();
+  w.change = Eigen::FullPivLU<Eigen::MatrixXd>(system).solve(wanted).head(n);
+}
+
 /// The next change of u. With as many axes as rows or more, the smallest one of all from the nominal command that does
 /// it; with fewer, least squares.
 void CommandSolver::step(Work& w, double damping) const {
   const auto J = w.J.topRows(w.rows);
   const auto e = w.e.head(w.rows);
-  if (J.cols() >= w.rows) {
+  if (w.rows == 3 && J.cols() > 3 && J.cols() < 6 && damping == 0 && !is_parallel()) {
+    step_for_position(w);
+  } else if (J.cols() >= w.rows) {
     w.square.setIdentity();
     w.square.topLeftCorner(w.rows, w.rows).noalias() = J.lazyProduct(J.transpose());
     w.square.diagonal().array() += damping * damping;

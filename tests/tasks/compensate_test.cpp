@@ -380,13 +380,18 @@ TEST(Compensate, OfFewerThanSixAxesIsRefusedOrReachesPositionsAlone) {
   const Compensation c = compensate_problem(problem, {list}, options, Monitor{});
   EXPECT_GE(c.compensated, 25U);
   const ChainDescription nominal = nominal_arm(before), real = corrected_arm(before, values);
+  double turned_before = 0, turned_after = 0;
   for (std::size_t i = 0; i < 30; ++i) {
     if (c.lists[0].solutions[i].outcome != CommandSolver::Outcome::reached) continue;
     const Eigen::Isometry3d found = tip_by_hand(real, command_of(c, i)),
                             wanted = tip_by_hand(nominal, list.configurations[i]);
     EXPECT_LT((found.translation() - wanted.translation()).norm(), micro);
     EXPECT_NEAR(c.lists[0].solutions[i].after.rotation, angle_between(found, wanted), 1e-8);
+    turned_before += angle_between(tip_by_hand(real, list.configurations[i]), wanted);
+    turned_after += angle_between(found, wanted);
   }
+  // The axis to spare turns the tip back.
+  EXPECT_LT(turned_after, turned_before);
 }
 
 TEST(Compensate, NamesWhatIsBeyondALimitOutOfReachAndNearASingularity) {

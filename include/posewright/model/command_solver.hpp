@@ -84,6 +84,7 @@ class CommandSolver {
   Point point(std::span<const double> q) const;
   bool evaluate(Work& w) const;
   void step(Work& w, double damping) const;
+  void step_for_position(Work& w) const;
   bool iterate(Work& w) const;
   bool hold_at_limits(Work& w) const;
   bool command(Work& w, std::span<const double> q, std::span<double> configuration) const;

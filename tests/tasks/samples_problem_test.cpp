@@ -230,6 +230,26 @@ TEST(SamplesProblem, NamesWrongSamplesAndFindsTheFramesWithoutThem) {
         << seed;
 }
 
+/// A noise as large as what a wrong convention leaves would let it pass.
+TEST(SamplesProblem, AreNotUsedWhereQuaternionsHaveTheRealPartFirst) {
+  const TemporaryFolder folder;
+  for (const std::uint64_t seed : {8, 9, 10}) {
+    Drawn d = drawn(true, seed);
+    for (auto& [tip, seen] : d.samples)
+      for (Eigen::Isometry3d* X : {&tip, &seen}) {
+        const Eigen::Quaterniond q(X->linear());
+        X->linear() = Eigen::Quaterniond(q.z(), q.w(), q.x(), q.y()).toRotationMatrix();
+      }
+    const auto file = folder.write("samples.csv", csv_text(d));
+    const SamplesProblem found = samples_problem(file, {});
+    try {
+      EXPECT_EQ(calibrated(file, found).verdict, Verdict::do_not_use);
+    } catch (const CannotDo& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("w stands first"));
+    }
+  }
+}
+
 TEST(SamplesProblem, NamesWhatIsWrongInOneLine) {
   const TemporaryFolder folder;
   const Drawn d = drawn(true, 5, 4);

@@ -37,6 +37,9 @@ constexpr std::size_t fewest_trusted = 6;
 constexpr int trimming_rounds = 5;
 // Samples that fit to rounding say nothing of the noise, m and rad.
 constexpr double least_position = 1e-5, least_rotation = 1e-5;
+// Share of the range of the samples that is noise at most: a wrong convention leaves as much as they range over, and
+// would be the noise that it is judged by.
+constexpr double most_of_range = 0.05;
 
 struct Sample {
   int id = 0;
@@ -145,6 +148,19 @@ std::vector<Sample> trusted(const std::vector<Sample>& samples, Frames& frames, 
   return kept;
 }
 
+/// Root mean squares of the tip's position and rotation, each axis, about the middle and the first sample.
+std::array<double, 2> range_of(const std::vector<Sample>& samples) {
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const Sample& sample : samples) middle += sample.tip.translation() / double(samples.size());
+  double position = 0, rotation = 0;
+  for (const Sample& sample : samples) {
+    position += (sample.tip.translation() - middle).squaredNorm();
+    rotation += rotation_vector(samples.front().tip.linear().transpose() * sample.tip.linear()).squaredNorm();
+  }
+  const double numbers = 3.0 * double(samples.size());
+  return {std::sqrt(position / numbers), std::sqrt(rotation / numbers)};
+}
+
 /// Root mean square errors of the readings' position and rotation, each axis, about the fitted frames.
 std::array<double, 2> noise_of(const std::vector<Sample>& samples, const Frames& frames) {
   double position = 0, rotation = 0;
@@ -155,8 +171,9 @@ std::array<double, 2> noise_of(const std::vector<Sample>& samples, const Frames&
   }
   // Twelve numbers are fitted to six of each sample.
   const double freedom = std::max(1.0, 3.0 * double(samples.size()) - 6.0);
-  return {std::max(least_position, std::sqrt(position / freedom)),
-          std::max(least_rotation, std::sqrt(rotation / freedom))};
+  const auto [far, turned] = range_of(samples);
+  return {std::max(least_position, std::min(std::sqrt(position / freedom), most_of_range * far)),
+          std::max(least_rotation, std::min(std::sqrt(rotation / freedom), most_of_range * turned))};
 }
 
 std::string placement_text(const Eigen::Isometry3d& X) {

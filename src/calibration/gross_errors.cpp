@@ -44,14 +44,13 @@ std::vector<double> sizes_of(const IdentificationModel& model, const std::vector
 
 /// Corrections of the board at one pose that put it where its picture shows it, all others nominal; those of all poses
 /// if there is no board in the picture.
-std::vector<double> as_pictured(const MeasurementSpec& measurement, const IdentificationModel& model,
+std::vector<double> as_pictured(const CameraMeasurement& camera, const IdentificationModel& model,
                                 const MeasuredPose& pose, const std::vector<double>& correction) {
-  const auto* camera = std::get_if<CameraMeasurement>(&measurement.instrument);
-  const std::optional<Eigen::Isometry3d> seen = camera != nullptr ? board_pose(*camera, pose.y) : std::nullopt;
+  const std::optional<Eigen::Isometry3d> seen = board_pose(camera, pose.y);
   if (!seen) return correction;
   const Eigen::Isometry3d tip = model.tool_pose(pose.q);
-  const Eigen::Isometry3d carrier = camera->on_hand ? tip : tip.inverse();
-  const Eigen::Isometry3d moved = isometry(camera->board).inverse() * carrier * isometry(camera->camera) * *seen;
+  const Eigen::Isometry3d carrier = camera.on_hand ? tip : tip.inverse();
+  const Eigen::Isometry3d moved = isometry(camera.board).inverse() * carrier * isometry(camera.camera) * *seen;
   const Eigen::Vector3d zyx = moved.linear().eulerAngles(2, 1, 0);
   const std::map<std::string, double> board = {{"board.x", moved.translation().x()},
                                                {"board.y", moved.translation().y()},
@@ -65,9 +64,10 @@ std::vector<double> as_pictured(const MeasurementSpec& measurement, const Identi
   return there;
 }
 
-/// One pose below the other, each at its own corrections.
+/// One pose below the other, each at its own corrections, or all at the only ones.
 Eigen::MatrixXd rows_at(const IdentificationModel& model, const VariantColumns& columns,
                         const std::vector<MeasuredPose>& poses, const std::vector<std::vector<double>>& corrections) {
+  if (corrections.size() == 1) return blocks_of(model, columns, poses, corrections.front()).all();
   Eigen::MatrixXd rows;
   for (std::size_t k = 0; k < poses.size(); ++k) {
     const Eigen::MatrixXd block = blocks_of(model, columns, {poses[k]}, corrections[k]).all();
@@ -197,7 +197,7 @@ class Trimming {
 
 std::vector<double> explained_sizes(const IdentificationModel& model, const VariantColumns& columns,
                                     const std::vector<MeasuredPose>& poses, const std::vector<double>& correction) {
-  return sizes_of_rows(tolerance_rows(model, columns, poses, {poses.size(), correction}), poses);
+  return sizes_of_rows(tolerance_rows(model, columns, poses, {correction}), poses);
 }
 
 double residual_rms(const IdentificationModel& model, const std::vector<MeasuredPose>& poses,
@@ -209,7 +209,9 @@ double explained_rms(const MeasurementSpec& measurement, const IdentificationMod
                      const VariantColumns& columns, const std::vector<MeasuredPose>& poses,
                      const std::vector<double>& correction) {
   std::vector<std::vector<double>> corrections;
-  for (const MeasuredPose& pose : poses) corrections.push_back(as_pictured(measurement, model, pose, correction));
+  if (const auto* camera = std::get_if<CameraMeasurement>(&measurement.instrument))
+    for (const MeasuredPose& pose : poses) corrections.push_back(as_pictured(*camera, model, pose, correction));
+  else corrections.push_back(correction);
   const Eigen::MatrixXd rows = tolerance_rows(model, columns, poses, corrections);
   return rms_of_all(sizes_of_rows(beside_placing(model, columns, poses, corrections, rows), poses), poses);
 }

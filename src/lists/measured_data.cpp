@@ -91,7 +91,7 @@ void SuspiciousRows::look_for_copies(int line, const std::vector<double>& q, con
     const auto& [joints, readings] = at->second;
     if (!same_numbers(readings, y)) continue;
     lines_[moved(joints, q) ? "the readings of an earlier row, at other joints: was the instrument read again?"
-                            : "a copy of an earlier row? It counts as one more reading: leave it out"]
+                            : "the readings of an earlier row, to the last digit: leave it out if it is a copy"]
         .push_back(line);
     return;
   }

@@ -413,7 +413,7 @@ TEST(Compensate, OfFewerThanSixAxesIsRefusedOrReachesPositionsAlone) {
       ++tried;
     }
   }
-  EXPECT_GT(farther, 0.9 * tried);
+  EXPECT_GT(farther, 0.8 * tried);  // half of them where the axis stays
 }
 
 TEST(Compensate, NamesWhatIsBeyondALimitOutOfReachAndNearASingularity) {

@@ -20,11 +20,12 @@ constexpr double in_degrees = 180 / std::numbers::pi;
 /// A text that YAML reads back as it is: JSON strings are YAML.
 std::string quoted(const std::string& text) { return json_text(nlohmann::json(text), JsonLayout::one_line); }
 
-/// Rounded to 0.1 mm; in mm below 1 m.
+/// Rounded to 0.1 mm; in mm below 1 m. A large number has its unit: without one it is taken for millimetres.
 std::string length(double metres) {
   const double rounded = std::round(metres * 1e4) / 1e4 + 0.0;
   if (rounded == 0) return "0";
-  return std::abs(rounded) < 1 ? fmt::format("\"{:g} mm\"", rounded * 1e3) : fmt::format("{:g}", rounded);
+  if (std::abs(rounded) < 1) return fmt::format("\"{:g} mm\"", rounded * 1e3);
+  return std::abs(rounded) < 50 ? fmt::format("{:g}", rounded) : fmt::format("\"{:g} m\"", rounded);
 }
 
 std::string vector(const Eigen::Vector3d& v) {

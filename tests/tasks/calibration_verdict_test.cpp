@@ -83,7 +83,10 @@ TEST(Verdict, AGainThatChanceExplainsIsNoRefusalAndALossBeyondChanceIsOne) {
     EXPECT_EQ(c.verdict == Verdict::use_it, c.left_out.gain > 2) << share;
     EXPECT_EQ(c.verdict == Verdict::do_not_use, c.left_out.gain < -2) << share;
     EXPECT_EQ(c.refusals.empty(), c.verdict != Verdict::do_not_use) << share;
-    if (c.verdict == Verdict::do_not_use) ++refused;
+    if (c.verdict == Verdict::do_not_use) {
+      ++refused;
+      EXPECT_THAT(c.refusals, Contains(HasSubstr("times uncalibrated, significantly worse")));
+    }
     if (c.verdict != Verdict::gain_not_shown) continue;
     ++not_shown;
     EXPECT_THAT(c.notes, Contains(HasSubstr("gain not shown")));

@@ -205,7 +205,7 @@ void judge_calibration(const CalibratedPoses& poses, Calibration& c) {
     refuse_wide_predictions(poses, c);
     if (c.left_out.worse() && std::isfinite(c.left_out.estimated) &&
         c.left_out.estimated > worth_a_refusal * c.left_out.placed)
-      c.refusals.push_back(predicted(c) + ", a significant gain" + near_dependence(c) + "; " + remedy_of(c));
+      c.refusals.push_back(predicted(c) + ", significantly worse" + near_dependence(c) + "; " + remedy_of(c));
   }
   const bool shown = c.left_out.groups == 0 || (c.left_out.gains() && c.left_out.gains_in_range());
   c.verdict = !c.refusals.empty() ? Verdict::do_not_use : shown ? Verdict::use_it : Verdict::gain_not_shown;

@@ -302,7 +302,7 @@ void add_picture(const CameraMeasurement& camera, std::vector<Hypothesis>& table
 
 struct Unit {
   double size;
-  const char* condition;
+  const char *condition, *remedy;
 };
 
 /// Name of one factor on all measured lengths.
@@ -310,14 +310,15 @@ Convention scaled(double scale, const MeasurementSpec& measurement) {
   if (const auto* camera = std::get_if<CameraMeasurement>(&measurement.instrument))
     return {fmt::format("squares of the board are {:.4g} mm", 1e3 * scale * camera->spacing),
             fmt::format("measure the board, and write its spacing in the problem file")};
+  constexpr const char* header = "state the unit in the header, as in pose.x [mm]";
   for (const Unit& unit :
-       {Unit{1e-3, "lengths that were read are mm"}, Unit{0.0254, "lengths that were read are inches"},
-        Unit{0.01, "lengths that were read are cm"},
-        Unit{1e3, "lengths that were read are m, or those of the robot mm"},
-        Unit{1 / 0.0254, "lengths of the robot are inches"}})
-    if (std::abs(std::log(scale / unit.size)) < 0.02)
-      return {unit.condition, "state the unit in the header, as in pose.x [mm]"};
-  return {fmt::format("lengths that were read are {:.5g} times as long", scale),
+       {Unit{1e-3, "lengths that were read are mm", header}, Unit{0.0254, "lengths that were read are inches", header},
+        Unit{0.01, "lengths that were read are cm", header},
+        Unit{1e3, "lengths that were read are m, or those of the robot mm",
+             "state the unit in the header, as in pose.x [m], or the robot's lengths in m"},
+        Unit{1 / 0.0254, "lengths of the robot are inches", "state the robot's lengths in m"}})
+    if (std::abs(std::log(scale / unit.size)) < 0.02) return {unit.condition, unit.remedy};
+  return {fmt::format("lengths are {:.5g} times those that were read", scale),
           "look for the scale of instrument or robot"};
 }
 

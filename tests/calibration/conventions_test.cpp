@@ -55,11 +55,19 @@ TEST(Conventions, SignZeroAndCouplingOfEveryJointAreNamed) {
 }
 
 TEST(Conventions, RowsUnitsAndMirrorsOfPointsAreNamed) {
-  Arm late, inches, mirrored, degrees;
+  Arm late, inches, robot_in_inches, longer, mirrored, degrees;
   for (std::size_t i = late.poses.size() - 1; i > 0; --i) late.poses[i].y = late.poses[i - 1].y;
   EXPECT_EQ(late.found(), "[readings belong 1 row earlier]");
   for (MeasuredPose& pose : inches.poses) pose.y /= 0.0254;
   EXPECT_EQ(inches.found(), "[lengths that were read are inches]");
+  for (MeasuredPose& pose : robot_in_inches.poses) pose.y *= 0.0254;
+  const std::vector<Convention> own =
+      find_conventions(robot_in_inches.problem, *robot_in_inches.model, robot_in_inches.poses, {}).found;
+  ASSERT_EQ(own.size(), 1u);
+  EXPECT_EQ(own[0].condition, "lengths of the robot are inches");
+  EXPECT_EQ(own[0].remedy, "state the robot's lengths in m") << "no header of the readings mends that";
+  for (MeasuredPose& pose : longer.poses) pose.y *= 0.8;
+  EXPECT_THAT(longer.found(), testing::MatchesRegex("\\[lengths are 1.25[0-9]* times those that were read\\]"));
   for (MeasuredPose& pose : mirrored.poses)
     for (Eigen::Index i = 1; i < pose.y.size(); i += 3) pose.y[i] = -pose.y[i];
   EXPECT_EQ(mirrored.found(), "[the instrument's axes or the robot's are left-handed (mirrored)]");

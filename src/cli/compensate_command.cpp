@@ -153,7 +153,10 @@ int run_compensate(const po::variables_map& values, const Words& positional) {
     write_results(all);
     for (const FileToWrite& file : all) written.push_back(file.file);
   } else if (!to.empty() || !robot.files.empty()) {
-    result.notes.emplace_back("no file is written; --partial keeps uncompensated poses unchanged");
+    // No option writes a line that is left by more than is allowed.
+    const bool helps = !result.is_whole() && !call.partial;
+    result.notes.emplace_back(std::string("no file is written") +
+                              (helps ? "; --partial keeps uncompensated poses unchanged" : ""));
   }
   show_compensation(common, problem, result, robot, written);
   return made.good ? done : cannot_do;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numbers>
 
@@ -82,6 +83,7 @@ Json account_json(const ProgramAccount& program) {
 }
 
 std::string words_of(Treatment treatment) {
+  if (treatment == Treatment::left) return "left on purpose";
   std::string words = treatment_key(treatment);
   std::replace(words.begin(), words.end(), '_', ' ');
   return words;
@@ -90,7 +92,7 @@ std::string words_of(Treatment treatment) {
 /// Every motion and point of a program, with the reason where it is not compensated.
 std::string account_text(const ProgramAccount& program) {
   std::string text =
-      fmt::format("\n{} ({}): {} compensated, {} kept on purpose, {} not compensated, {} not understood\n",
+      fmt::format("\n{} ({}): {} compensated, {} left on purpose, {} not compensated, {} not understood\n",
                   program.file, program.format, program.count(Treatment::compensated), program.count(Treatment::left),
                   program.count(Treatment::not_compensated), program.count(Treatment::not_understood));
   Table table({"line", "motion or point", "", ""}, "rl");
@@ -134,8 +136,11 @@ std::string compensation_text(const Compensation& c) {
   for (const ProgramAccount& program : c.programs) text += account_text(program);
   if (!c.lines.empty()) {
     const LineDeviation& worst = *std::ranges::max_element(c.lines, {}, &LineDeviation::largest);
-    text += fmt::format("\n{} straight {} between poses: the tool leaves the line by at most {} mm ({}:{})\n",
-                        c.lines.size(), c.lines.size() == 1 ? "motion" : "motions", length_in_mm(worst.largest),
+    text += fmt::format("\n{} straight {} between poses: the tool {} ({}:{})\n", c.lines.size(),
+                        c.lines.size() == 1 ? "motion" : "motions",
+                        std::isfinite(worst.largest)
+                            ? fmt::format("leaves the line by up to {} mm", length_in_mm(worst.largest))
+                            : "cannot follow the line",
                         worst.file, worst.line);
   }
   if (c.failures.empty()) return text;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "posewright/lists/parameters_file.hpp"
 #include "posewright/support/error.hpp"
 
@@ -22,8 +24,10 @@ bool keep_lines(Compensation& result, double allowed) {
     if (line.largest <= allowed) continue;
     kept = false;
     result.notes.push_back(
-        fmt::format("{}:{}: the tool would leave the line by {:.4f} mm; --line-deviation allows {:.4f}", line.file,
-                    line.line, line.largest * 1e3, allowed * 1e3));
+        std::isfinite(line.largest)
+            ? fmt::format("{}:{}: the tool would leave the line by {:.4f} mm; --line-deviation allows {:.4f}",
+                          line.file, line.line, line.largest * 1e3, allowed * 1e3)
+            : fmt::format("{}:{}: the robot cannot follow the line", line.file, line.line));
   }
   return kept;
 }

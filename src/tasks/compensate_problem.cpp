@@ -23,6 +23,8 @@ namespace {
 
 // Poses that one thread takes at a time: Ctrl-C is heard between them.
 constexpr std::size_t chunk = 512;
+// m and rad: what a platform's way through its actuators and back leaves.
+constexpr double rounding = 1e-9;
 
 ProblemVariant calibrated_variant(const Problem& problem) {
   if (!problem.parameters)
@@ -217,9 +219,13 @@ class Compensator {
   }
 
   void add_notes() {
-    if (std::ranges::all_of(correction_, [](double c) { return c == 0; }))
-      result_.notes.push_back("no parameter of the robot was estimated in variant '" +
-                              calibrated_variant(problem_).spec.name + "': no compensation, poses stay as listed");
+    if (std::ranges::all_of(correction_, [](double c) { return c == 0; })) {
+      // A load bends even a robot whose parameters are nominal.
+      const bool still = std::max(result_.before.position_largest, result_.before.rotation_largest) < rounding;
+      result_.notes.push_back(
+          "no parameter of the robot was estimated in variant '" + calibrated_variant(problem_).spec.name +
+          (still ? "': no compensation, poses stay as listed" : "': only what the problem file states is compensated"));
+    }
     const std::string base = shown_displacement(*tip_, correction_, "base."),
                       tool = shown_displacement(*tip_, correction_, "tool.");
     if (!base.empty() && !options_.solver.with_base)

@@ -360,6 +360,7 @@ def check_lines(tool, base, folder):
         assert run.returncode == code and (folder / "line_out.src").exists() == (code == 0), run.stderr
         (folder / "line_out.src").touch()
     assert "the tool would leave the line by" in run.stderr
+    assert "no file is written" in run.stderr and "--partial" not in run.stderr, "it does not help where a line is left"
     print(f"lines: {len(poses) - 1}, the tool leaves them by at most {worst * 1e6:.1f} um, as computed here")
 
 

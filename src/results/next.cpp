@@ -50,10 +50,11 @@ std::string now_text(const NextPoint& now, const NextPoses& r) {
 std::string not_determined_text(const NextPoses& r) {
   if (r.measured == 0)
     return fmt::format("Go on: no pose is measured yet. {}",
-                       r.smallest ? fmt::format("At least {} determine all {} parameters. Until then, poses are chosen "
-                                                "at nominal values, with tolerances as prior knowledge.",
-                                                poses_text(*r.smallest), r.parameters)
-                                  : "Poses are chosen at nominal values, with tolerances as prior knowledge.");
+                       r.smallest
+                           ? fmt::format("At least {} determine{} all {} parameters. Until then, poses are chosen "
+                                         "at nominal values, with tolerances as prior knowledge.",
+                                         poses_text(*r.smallest), *r.smallest == 1 ? "s" : "", r.parameters)
+                           : "Poses are chosen at nominal values, with tolerances as prior knowledge.");
   if (r.told < r.parameters)
     return fmt::format(
         "Go on: {} too few for a fit, {} of {} parameters are determined. Poses are chosen at nominal values, with "
@@ -71,8 +72,10 @@ std::string gain_text(const NextPoses& r) {
   const std::string then = length(*r.ahead.back().expected);
   if (r.verdict == NextVerdict::not_determined)
     return fmt::format(" With p{} the predicted error at the {} is {}.", ids, where(r), error_of(r.ahead.back(), r));
-  return fmt::format(" P{} lower{} it from {} to {}.", ids, more == 1 ? "s" : "", length(*r.curve.back().expected),
-                     then);
+  // The criterion does not minimise this error: poses may raise it.
+  const bool lower = *r.ahead.back().expected < *r.curve.back().expected;
+  return fmt::format(" P{} {}{} it from {} to {}.", ids, lower ? "lower" : "bring", more == 1 ? "s" : "",
+                     length(*r.curve.back().expected), then);
 }
 
 std::string required_count(const NextPoses& r) {

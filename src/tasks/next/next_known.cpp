@@ -191,8 +191,8 @@ class FitSoFar {
     if (!(farthest > another_robot * expected)) return;
     const std::string& unit = model->readings()[worst].unit;
     throw InputError({options_.data.string(), result_.lines[k]},
-                     fmt::format("{} is {} from its estimate by the {} poses before", model->readings()[worst].name,
-                                 shown_value(farthest, unit), k),
+                     fmt::format("{} is {} from its estimate by the {} before", model->readings()[worst].name,
+                                 shown_value(farthest, unit), k == 1 ? "pose" : fmt::format("{} poses", k)),
                      fmt::format("some {} are expected; check for a row of another robot or a moved part",
                                  shown_value(2 * expected, unit)));
   }

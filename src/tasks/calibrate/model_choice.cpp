@@ -78,7 +78,9 @@ ModelChoice choose_model(const std::vector<Calibration>& models) {
     if (usable(c) && (best == nullptr || c.left_out.estimated < best->left_out.estimated)) best = &c;
   }
   if (best == nullptr) {
-    choice.why = "none predicts new poses better than the uncalibrated robot";
+    choice.why = std::ranges::all_of(models, [](const Calibration& c) { return !c.left_out.gains(); })
+                     ? "none is shown to predict new poses better than the uncalibrated robot"
+                     : "none that predicts new poses better than the uncalibrated robot is fit for use";
     return choice;
   }
   const Calibration* chosen = best;

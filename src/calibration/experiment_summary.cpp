@@ -86,7 +86,7 @@ ExperimentSummary summarise(const VirtualExperiment& experiment, const std::vect
   }
   summary.fitted = int(draws.size());
   if (draws.size() < 2)
-    throw CannotDo(summary.failed > 0 ? "no draw could be calibrated: " + summary.first_failure
+    throw CannotDo(summary.failed > 0 ? "fewer than two draws could be calibrated: " + summary.first_failure
                                       : "fewer than two draws were calibrated");
   summary.sigma_error = 1 / std::sqrt(2.0 * double(draws.size()));
   summary.coverage_error = binomial_error(interval_probability, draws.size());

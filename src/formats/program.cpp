@@ -255,12 +255,13 @@ int number_of(const std::vector<ProgramPoint>& points) {
   return int(std::stoul(sha256_hex(text).substr(0, 8), nullptr, 16) & 0x7fffffffU);
 }
 
-/// Speed of a route's motions, whose seconds are those of full speed.
+/// Time of a route's motions. Its seconds are those of the speed that its workspace states, full speed by default.
 std::string time_of(const PoseSequence& sequence, double percent) {
   double seconds = 0;
   for (const SequenceMotion& motion : sequence.motions) seconds += motion.seconds;
   if (seconds == 0) return {};
-  return fmt::format(": about {:.0f} s of motion, {:.0f} s at full speed", 100 / percent * seconds, seconds);
+  return fmt::format(": about {:.0f} s of motion if the route's {:.0f} s are at full speed", 100 / percent * seconds,
+                     seconds);
 }
 
 }  // namespace

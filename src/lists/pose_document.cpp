@@ -297,8 +297,8 @@ PoseList program_poses(const std::filesystem::path& path, const std::vector<Coor
     all.lines.insert(all.lines.end(), own.lines.begin(), own.lines.end());
   }
   if (open > 0)
-    all.notes.push_back(
-        fmt::format("{}: {} lines are not read as poses: posewright compensate lists them", all.name, open));
+    all.notes.push_back(fmt::format("{}: {} not read as poses: posewright compensate lists them", all.name,
+                                    open == 1 ? "1 line is" : fmt::format("{} lines are", open)));
   keep_numbered(all);
   if (all.configurations.empty())
     throw InputError({path.string(), 0}, "has no poses by joint values", "a program that moves to them");

@@ -159,7 +159,7 @@ class SimulationVerdict {
     std::string which;
     for (std::size_t i = 0; i < std::min(s_.lost.size(), names_shown); ++i)
       which += fmt::format("{}pose {} in {:.0f} %", i == 0 ? "" : ", ", s_.lost[i].id, 100 * s_.lost[i].share);
-    if (s_.lost.size() > names_shown) which += fmt::format(", {} more at smaller rates", s_.lost.size() - names_shown);
+    if (s_.lost.size() > names_shown) which += fmt::format(", {} more, none more often", s_.lost.size() - names_shown);
     say(fmt::format("on average {:.2g} of {} poses give no reading{}: {}; the prediction includes them all",
                     s_.summary.lost_poses, s_.poses, s_.lost_because.empty() ? "" : " (" + s_.lost_because + ")",
                     which));

@@ -115,7 +115,7 @@ TEST(CalibrationProfiles, ThatAreStoppedLeaveLinearIntervalsAndSaySo) {
   const std::size_t done = profiled(found).size();
   EXPECT_GE(done, 1U);
   EXPECT_LE(done, 4U) << "of 42, on at most four threads";
-  EXPECT_THAT(found.notes, Contains(HasSubstr("requested profile intervals are linear ones")));
+  EXPECT_THAT(found.notes, Contains(HasSubstr("profile intervals are linear")));
   for (const CalibratedParameter& p : found.parameters) {
     EXPECT_TRUE(std::isfinite(p.lower + p.upper) || p.profiled);
   }

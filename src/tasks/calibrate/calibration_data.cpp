@@ -176,10 +176,10 @@ void refuse_gross_poses(const IdentificationModel& model, const VariantColumns& 
   if (gross.size() > most_listed) list += fmt::format(" and {} more", gross.size() - most_listed);
   std::string noted;
   for (const std::string& note : notes) noted += "; " + note;
-  throw CannotDo(
-      fmt::format("gross errors at pose{} {}; noise and tolerances explain {:.3g} times, and the other poses fit: "
-                  "check for a lost target or a wrong row. Leave it out, or use --weights robust{}",
-                  gross.size() == 1 ? "" : "s", list, gross.front().explained, noted));
+  throw CannotDo(fmt::format(
+      "gross errors at pose{} {}; noise and tolerances explain {:.3g} times, and the other poses fit: "
+      "check for a lost target or a wrong row. Leave {} out, or use --weights robust{}",
+      gross.size() == 1 ? "" : "s", list, gross.front().explained, gross.size() == 1 ? "it" : "them", noted));
 }
 
 namespace {

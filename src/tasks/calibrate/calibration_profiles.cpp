@@ -67,9 +67,9 @@ ProfiledColumns profiles_of(const ProfiledFit& fitted, const CalibrateOptions& o
                                       stretch, options.threads, monitor);
   const auto missing = std::count(result.profiles.intervals.begin(), result.profiles.intervals.end(), std::nullopt);
   if (missing == 0) return result;
-  calibration.notes.push_back(fmt::format("{}: {} of the {} requested profile intervals are linear ones",
+  calibration.notes.push_back(fmt::format("{}: {} of the {} profile intervals {} linear",
                                           monitor.should_stop() ? "stopped early" : "the fit failed near the estimate",
-                                          missing, result.columns.size()));
+                                          missing, result.columns.size(), missing == 1 ? "is" : "are"));
   return result;
 }
 

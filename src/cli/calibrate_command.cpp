@@ -175,7 +175,7 @@ int run_calibrate(const po::variables_map& values, const Words& positional) {
   if (written)
     for (FileToWrite& file : files_to_write(wanted, problem, result, result.notes)) files.push_back(std::move(file));
   else if (!wanted.parameters.empty() || !wanted.urdf.empty())
-    result.notes.emplace_back("nothing is written: these parameters are not good enough to use");
+    result.notes.emplace_back("no parameters are written: they are not good enough to use");
   // These files do not belong together as a program and its points do: one at a time, each replaces its own.
   for (const FileToWrite& file : files) write_results({file});
   print_notes(result.notes);

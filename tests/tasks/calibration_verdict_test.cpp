@@ -37,7 +37,7 @@ TEST(Verdict, OnePoseReadFifteenTimesIsRefused) {
   if (!fs::exists(cases)) GTEST_SKIP() << "../shared/cases is absent";
   const Calibration one = calibrated_case("one_pose/problem.yaml", "one_pose/same_pose.csv");
   EXPECT_EQ(one.verdict, Verdict::do_not_use);
-  EXPECT_THAT(one.refusals, Contains(HasSubstr("only one pose was measured")));
+  EXPECT_THAT(one.refusals, Contains(HasSubstr("only one pose is fitted")));
 }
 
 TEST(Verdict, ResidualsThatNoRobotHasAreRefusedAndRightOnesAreNot) {

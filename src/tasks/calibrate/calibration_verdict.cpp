@@ -21,6 +21,8 @@ namespace {
 constexpr double hopeless_curvature = 10.0;
 // Predictions whose σ is so many times what base and tool alone leave are worse than these.
 constexpr double hopeless_predictions = 3.0;
+// σ of a turn of frames in rad beyond which it is open (loose_direction()).
+constexpr double largest_angle = 1.0;
 // Residuals of a pose, against those of the middle one.
 constexpr double stands_out = 3.0;
 // Less is no reason to refuse, however significant.
@@ -77,18 +79,19 @@ void refuse_residuals(const CalibratedPoses& poses, Calibration& c) {
 
 /// An estimate that nothing can test.
 void refuse_few_poses(Calibration& c) {
-  if (c.poses < 2) c.refusals.emplace_back("only one pose was measured: no other pose can check the estimate");
+  if (c.poses < 2) c.refusals.emplace_back("only one pose is fitted: no other pose can check the estimate");
   else if (c.left_out.groups > 0 && !std::isfinite(c.left_out.estimated))
-    c.refusals.push_back("too few poses to leave one out: " + c.left_out.why_not + near_dependence(c) + "; " +
-                         remedy_of(c));
+    c.refusals.push_back("poses that are left out cannot be predicted: " + c.left_out.why_not + near_dependence(c) +
+                         "; " + remedy_of(c));
 }
 
 /// A frame that the readings leave open may be metres off, wherever the weak limits hold it.
 void refuse_open_frames(const CalibratedPoses& poses, Calibration& c) {
   if (const auto loose = loose_direction(poses.columns, c.prior, c.fit, size_of(poses.model)))
     c.refusals.push_back(fmt::format(
-        "the readings determine the position of frames along {} only to {} (1σ), more than the size of the robot; {}",
-        loose->text(), shown_value(loose->sigma, loose->unit), remedy_of(c)));
+        "the readings determine the {} of frames along {} only to {} (1σ), more than {}; {}",
+        loose->unit == "m" ? "position" : "orientation", loose->text(), shown_value(loose->sigma, loose->unit),
+        loose->unit == "m" ? "the size of the robot" : shown_value(largest_angle, "rad"), remedy_of(c)));
   if (c.curvature.largest > hopeless_curvature)
     c.refusals.push_back(
         fmt::format("the problem is strongly nonlinear within one σ (curvature {:.3g}, most along {}): the estimate "
@@ -140,7 +143,9 @@ std::string why_not_shown(const Calibration& c) {
         "deviations{}; measure poses all over the range",
         *c.left_out.gain_in_range, near_dependence(c));
   return predicted(c) +
-         ", not significant: the data do not show that these parameters are better than the nominal ones" +
+         (c.left_out.worse() ? ", significantly worse, if only a little"
+                             : ", not significant: the data do not show that these parameters are better than the "
+                               "nominal ones") +
          near_dependence(c);
 }
 

@@ -121,11 +121,11 @@ const OptionTable<CalibrateCall>& calibrate_options() {
           if (o.profile.choice == ProfileChoice::named && o.weighting == Weighting::robust)
             throw InputError({}, given.name + " with robust weights", "weights: ols or wls");
         });
-    t.flag(
-        "interpolate",
-        "add the residuals, interpolated between the poses, to predictions (variant with `unmodelled`); refused unless "
-        "cross-validation shows a gain",
-        &C::interpolate);
+    t.flag("interpolate",
+           "add the residuals, interpolated between the poses, to predictions (variant with `unmodelled`); left out "
+           "unless "
+           "cross-validation shows a gain",
+           &C::interpolate);
     t.of_program("output,o", "FILE", "calibrated parameters as YAML, for --parameters of other commands");
     t.of_program("deformation", "FILE.svg",
                  "picture of the motion of a platform's joint centres, if the data contain them");

@@ -168,18 +168,30 @@ std::string histogram_text(const std::vector<int>& counts) {
   return text;
 }
 
+/// The test is that of the fit without an unmodelled effect; scale and factor are those of the fit that counts one.
+std::string chi_square_text(const Fit& fit, const TestResult& test) {
+  const bool counts = fit.chi_square != test.statistic;
+  const double scale = counts ? std::sqrt(test.statistic / fit.freedom) : fit.scale;
+  const bool seldom_found = test.probability < seldom;
+  std::string text = fmt::format(
+      "Chi-square {:.4g} for {} degrees of freedom (p {}){}: residuals are {:.3g} times the stated noise",
+      test.statistic, fit.freedom, chance_text(test.probability), counts ? " before an effect is counted" : "", scale);
+  if (counts) text += fmt::format(".\n  With the effect they are {:.3g} times; σ and intervals count it", fit.scale);
+  else if (!seldom_found && !(fit.noise_factor > 1)) return text + ", as expected.\n";
+  if (fit.noise_factor > 1)
+    text += fmt::format("{} are scaled by {:.3g}",
+                        counts ? ", and" : ".\n  The chi-square test rejects model or noise; σ and intervals",
+                        fit.noise_factor);
+  else if (!counts)
+    text += scale < 1 ? ".\n  The noise is smaller than stated; σ and intervals still use the stated noise"
+                      : ".\n  The readings alone keep to the stated noise; σ and intervals use it";
+  return text + ".\n";
+}
+
 std::string noise_text(const Calibration& c) {
   std::string text = "\n";
   if (c.tests.chi_square.possible) {
-    text += fmt::format(
-        "Chi-square {:.4g} for {} degrees of freedom (p {}): residuals are {:.3g} times the stated noise",
-        c.tests.chi_square.statistic, c.fit.freedom, chance_text(c.tests.chi_square.probability), c.fit.scale);
-    if (c.fit.noise_factor > 1)
-      text += fmt::format(".\n  The chi-square test rejects model or noise; σ and intervals are scaled by {:.3g}.\n",
-                          c.fit.noise_factor);
-    else if (c.tests.chi_square.probability < seldom)
-      text += ".\n  The noise is smaller than stated; σ and intervals still use the stated noise.\n";
-    else text += ", as expected.\n";
+    text += chi_square_text(c.fit, c.tests.chi_square);
   } else if (c.fit.scale_known) {
     text += "No degrees of freedom are left: σ use the stated noise, which cannot be tested.\n";
   } else {
@@ -213,8 +225,8 @@ std::string effects_text(const Calibration& c) {
               ? fmt::format("{} explains {:.1f} % of the squared residuals: estimate it too, and compare the errors at "
                             "new poses.\n",
                             best.name, 100 * best.share)
-              : fmt::format("None of {} unfitted effects explains a significant part of the residuals.\n",
-                            c.effects.size()));
+              : fmt::format("None of {} unfitted effect{} explains a significant part of the residuals.\n",
+                            c.effects.size(), c.effects.size() == 1 ? "" : "s"));
 }
 
 std::string left_out_text(const Calibration& c) {
@@ -239,8 +251,11 @@ std::string interpolation_text(const Interpolation& i) {
   if (!i.why_not.empty()) return "No interpolation: " + i.why_not + ".\n";
   return fmt::format(
       "Interpolation: error at new poses {} (rms), with the parameters alone {}: {} ({:.1f} standard errors){}.\n",
-      shown_value(i.interpolated, i.unit), shown_value(i.alone, i.unit), i.gain > 0 ? "a gain" : "a loss", i.gain,
-      i.gains() ? "" : ", not significant: predictions use the parameters alone");
+      shown_value(i.interpolated, i.unit), shown_value(i.alone, i.unit), i.gain > 0 ? "a gain" : "a loss",
+      std::abs(i.gain),
+      i.gains()       ? ""
+      : i.gain < -2.0 ? ": predictions use the parameters alone"
+                      : ", not significant: predictions use the parameters alone");
 }
 
 }  // namespace
@@ -264,7 +279,9 @@ std::string whiteness_text(const Calibration& c) {
     text += fmt::format("Correlation from pose to pose {:+.2f} (p {}){}.\n", c.tests.serial.statistic,
                         chance_text(c.tests.serial.probability),
                         c.tests.serial.probability < seldom
-                            ? ": successive residuals are correlated: drift, temperature, or a missing effect"
+                            ? c.tests.serial.statistic > 0
+                                  ? ": successive residuals are correlated: drift, temperature, or a missing effect"
+                                  : ": successive residuals alternate: what changes from pose to pose?"
                             : "");
   if (c.smooth.why_not.empty())
     text +=
@@ -278,12 +295,16 @@ std::string whiteness_text(const Calibration& c) {
             : fmt::format("No smooth effect detected (p {}).\n", chance_text(c.smooth.probability));
   if (c.interpolation) text += interpolation_text(*c.interpolation);
   if (c.tests.within.possible)
-    text += fmt::format("Correlation within a pose {:+.2f} (p {}){}.\n", c.tests.within.statistic,
-                        chance_text(c.tests.within.probability),
-                        c.tests.within.probability < seldom
-                            ? ": errors of one pose are correlated. State a larger repeatability, of the orientation "
-                              "too; without it σ and intervals are too small"
-                            : "");
+    text +=
+        fmt::format("Correlation within a pose {:+.2f} (p {}){}.\n", c.tests.within.statistic,
+                    chance_text(c.tests.within.probability),
+                    c.tests.within.probability < seldom
+                        ? c.tests.within.statistic > 0
+                              ? ": errors of one pose are correlated. State a larger repeatability, of the "
+                                "orientation too; without it σ and intervals are too small"
+                              : ": errors of one pose have less in common than the model says: a repeatability that "
+                                "is stated too large, or a missing effect"
+                        : "");
   if (c.tests.normality.possible)
     text +=
         fmt::format("Bell shape (Jarque-Bera test) {:.3g} (p {}){}.\n", c.tests.normality.statistic,

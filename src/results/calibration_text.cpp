@@ -58,7 +58,10 @@ std::string orientations_text(const Calibration& c) {
 /// Remark on one parameter besides its numbers.
 std::string remark_of(const CalibratedParameter& p) {
   if (!p.given.empty()) return fmt::format("given {}", fmt::join(p.given, ", "));
-  std::string text = p.weak ? "determined mostly by its tolerance" : p.label.role == Role::nuisance ? "nuisance" : "";
+  std::string text = p.weak && p.prior                ? "determined mostly by its tolerance"
+                     : p.weak                         ? "σ exceeds its tolerance"
+                     : p.label.role == Role::nuisance ? "nuisance"
+                                                      : "";
   if (!p.profiled) return text;
   return text + fmt::format("{}profile; linear {} to {}", text.empty() ? "" : "; ",
                             shown_to(p.value - p.half_width, p.sigma, p.label.unit),
@@ -93,9 +96,11 @@ std::string parameters_text(const Calibration& c) {
                                       [](const CalibratedParameter& p) { return !p.estimated; });
   if (c.automatic && left_out > 0)
     return text +
-           fmt::format(
-               "\n{} more parameters of the robot are combinations of these and stay nominal (--json lists them)\n",
-               left_out);
+           (left_out == 1 ? "\n1 more parameter of the robot is a combination of these or without effect: it stays"
+                          : fmt::format("\n{} more parameters of the robot are combinations of these or without "
+                                        "effect: they stay",
+                                        left_out)) +
+           " nominal (--json lists them)\n";
   bool first = true;
   for (const CalibratedParameter& p : c.parameters) {
     if (p.estimated) continue;
@@ -247,6 +252,14 @@ std::string outliers_text(const Calibration& c) {
   return text.empty() ? text : text + "\n";
 }
 
+/// What of the effect that the residuals show is in σ: itself, or the one that a variant states.
+std::string counted_text(const Calibration& c) {
+  if (!c.counted) return "; with `unmodelled: auto` of a variant σ include it";
+  const double own = c.smooth.size / std::max(1.0, c.smooth.noise);
+  if (std::abs(c.counted->size - own) <= 1e-6 * own) return "; σ and intervals include it";
+  return "; σ and intervals include the stated " + shown_value(c.counted->size, "m");
+}
+
 std::string interpolation_text(const Interpolation& i) {
   if (!i.why_not.empty()) return "No interpolation: " + i.why_not + ".\n";
   return fmt::format(
@@ -291,7 +304,7 @@ std::string whiteness_text(const Calibration& c) {
                   "{:.3g} times the stated noise{}.\n",
                   shown_value(c.smooth.size, "m"), shown_value(c.smooth.lower, "m"), shown_value(c.smooth.upper, "m"),
                   c.smooth.length * 180 / std::numbers::pi, chance_text(c.smooth.probability), c.smooth.noise,
-                  c.counted ? "; σ and intervals include it" : "; with `unmodelled: auto` of a variant σ include it")
+                  counted_text(c))
             : fmt::format("No smooth effect detected (p {}).\n", chance_text(c.smooth.probability));
   if (c.interpolation) text += interpolation_text(*c.interpolation);
   if (c.tests.within.possible)

@@ -54,6 +54,28 @@ TEST(Sentences, OfChiSquareSayWhichFitAndWhichDirection) {
               HasSubstr("1.5 times; σ and intervals count it, and are scaled by 1.5"));
 }
 
+TEST(Sentences, OfATolerancesShareNeedOneThatCounts) {
+  Calibration c = empty_calibration();
+  CalibratedParameter p;
+  p.label.name = "joint_1.offset";
+  p.label.unit = "rad";
+  p.label.tolerance = p.sigma = 1e-3;
+  p.weak = p.prior = true;
+  c.parameters = {p};
+  EXPECT_THAT(calibration_text(c), HasSubstr("determined mostly by its tolerance"));
+  c.parameters[0].prior = false;
+  EXPECT_THAT(calibration_text(c),
+              AllOf(HasSubstr("free"), HasSubstr("σ exceeds its tolerance"), Not(HasSubstr("mostly"))));
+  c.automatic = true;
+  p.estimated = false;
+  c.parameters.push_back(p);
+  EXPECT_THAT(calibration_text(c),
+              HasSubstr("1 more parameter of the robot is a combination of these or without effect"));
+  c.parameters.push_back(p);
+  EXPECT_THAT(calibration_text(c),
+              HasSubstr("2 more parameters of the robot are combinations of these or without effect"));
+}
+
 TEST(Sentences, OfCorrelationsHaveItsSign) {
   Calibration c = empty_calibration();
   c.tests.serial = c.tests.within = {0.3, 1e-4, true};
@@ -61,6 +83,19 @@ TEST(Sentences, OfCorrelationsHaveItsSign) {
   c.tests.serial = c.tests.within = {-0.3, 1e-4, true};
   EXPECT_THAT(calibration_text(c), AllOf(HasSubstr("residuals alternate"), HasSubstr("stated too large"),
                                          Not(HasSubstr("drift")), Not(HasSubstr("larger repeatability"))));
+}
+
+TEST(Sentences, OfASmoothEffectSayWhichSizeCounts) {
+  Calibration c = empty_calibration();
+  c.smooth.why_not.clear();
+  c.smooth.probability = 1e-4;
+  c.smooth.size = 3e-4;
+  c.smooth.noise = 1.5;
+  EXPECT_THAT(calibration_text(c), HasSubstr("with `unmodelled: auto` of a variant σ include it"));
+  c.counted = {2e-4, 1.0};  // noise that is refused counts beside it
+  EXPECT_THAT(calibration_text(c), HasSubstr("; σ and intervals include it."));
+  c.counted->size = 1e-4;
+  EXPECT_THAT(calibration_text(c), HasSubstr("; σ and intervals include the stated 0.1 mm."));
 }
 
 TEST(Sentences, OfInterpolationCallALossBeyondChanceNoAccident) {

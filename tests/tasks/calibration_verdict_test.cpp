@@ -1,5 +1,7 @@
 // Whether an estimate is to be used, told by cases whose right answer is known.
 
+#include "src/tasks/calibrate/calibration_verdict.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -93,6 +95,29 @@ TEST(Verdict, AGainThatChanceExplainsIsNoRefusalAndALossBeyondChanceIsOne) {
   }
   EXPECT_GT(not_shown, 0);
   EXPECT_GT(refused, 0);
+}
+
+TEST(Verdict, ALossBeyondChanceThatIsSmallIsNoRefusalAndNotCalledChance) {
+  VirtualFile data("kr270/problem.yaml", 20);
+  data.write();
+  Calibration c = calibrate_problem(data.problem, data.options(), Monitor{});
+  ASSERT_EQ(c.columns.size(), data.columns.selected.size());
+  const std::vector<double> placed(data.model->parameters().size(), 0.0);
+  const std::vector<MeasuredPose> none;
+  const auto judged = [&](double gain, double estimated) {
+    Calibration other = c;
+    other.notes.clear();
+    other.refusals.clear();
+    other.left_out.gain = gain;
+    other.left_out.estimated = estimated;
+    other.left_out.placed = 1.0;
+    judge_calibration({data.problem.measurement, *data.model, data.columns, data.poses, none, placed}, other);
+    return other;
+  };
+  EXPECT_THAT(judged(-3, 1.01).notes, Contains(HasSubstr("uncalibrated, significantly worse")));
+  EXPECT_THAT(judged(-3, 1.01).refusals, testing::IsEmpty());
+  EXPECT_THAT(judged(-1, 1.01).notes, Contains(HasSubstr("uncalibrated, not significant")));
+  EXPECT_THAT(judged(-3, 1.5).refusals, Contains(HasSubstr("uncalibrated, significantly worse")));
 }
 
 TEST(Verdict, APoseWithALostTargetIsNamedBeforeAnythingIsFitted) {
@@ -198,7 +223,9 @@ TEST(Verdict, AnArmOnAColumnIsNeverMetresOffAndItsOpenDirectionIsNamed) {
     const Calibration c = arm.calibrated(random, Prior::manufactured);
     ASSERT_TRUE(c.fit.converged);
     EXPECT_EQ(c.verdict, Verdict::do_not_use);
-    EXPECT_THAT(c.refusals, Contains(testing::AllOf(HasSubstr("base.z"), HasSubstr("target.P.z"))));
+    EXPECT_THAT(c.refusals, Contains(testing::AllOf(HasSubstr("base.z"), HasSubstr("target.P.z"),
+                                                    HasSubstr("determine the position of frames"),
+                                                    HasSubstr("more than the size of the robot"))));
     for (const CalibratedParameter& p : c.parameters)
       if (p.label.name == "base.z") {
         EXPECT_NEAR(p.value, arm.base_z, 0.1) << draw;

@@ -50,8 +50,9 @@ std::string drop_text(const ListChange& change) {
 }
 
 std::string add_text(const ListChange& change) {
-  std::string text = fmt::format("Add: {} poses give {} of the list{}.\n", change.added.size(),
-                                 percent(change.efficiency), accuracy_of(change));
+  std::string text =
+      fmt::format("Add: {} {} {} of the list{}.\n", counted(long(change.added.size()), "pose"),
+                  change.added.size() == 1 ? "gives" : "give", percent(change.efficiency), accuracy_of(change));
   if (change.added.empty()) return text;
   std::vector<std::string> header{"pose"};
   for (const NamedValue& v : change.added.front().configuration) header.push_back(v.name);

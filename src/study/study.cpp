@@ -122,7 +122,9 @@ void keep_away_from_known(Study& study) {
   study.configurations = study.distance.away_from(known_before(study), study.configurations, study.repeats);
   if (const long lost = long(before - study.configurations.count()); lost > 0)
     study.configurations.rejected.emplace_back(
-        study.fixed.count() > 0 ? "fixed or measured already" : "measured already", lost);
+        fmt::format("{}{}", study.distance.kept ? "too near to a pose " : "",
+                    study.fixed.count() > 0 ? "fixed or measured already" : "measured already"),
+        lost);
   study.spacing = study.distance.among(study.configurations);
 }
 

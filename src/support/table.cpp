@@ -41,6 +41,10 @@ std::string unsigned_zero(std::string number) {
 
 }  // namespace
 
+std::string counted(long count, std::string_view noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
 std::string percent(double share) { return fmt::format("{:.2f} %", std::floor(share * 1e4) / 100); }
 
 std::string proved_percent(double share) { return fmt::format("{:.1f} %", std::floor(share * 1e3) / 10); }

@@ -207,6 +207,9 @@ class ListEvaluation {
     return change;
   }
 
+  /// Of the list's i-th pose, as the plan's table has it: poses that were measured before stand first.
+  int id_of(int i) const { return int(known_before(study_).count()) + i + 1; }
+
   /// The best N − k of the N: a search over the list itself.
   ListChange drop(int k, double phi, const std::vector<double>& references) {
     const int n = int(poses_.count());
@@ -224,7 +227,7 @@ class ListEvaluation {
     for (int i = 0; i < n; ++i)
       if (!std::binary_search(found.design.members.begin(), found.design.members.end(), i)) dropped.push_back(i);
     ListChange change = changed(without(poses_, dropped), phi);
-    for (const int i : dropped) change.poses.push_back(i + 1);
+    for (const int i : dropped) change.poses.push_back(id_of(i));
     return change;
   }
 
@@ -256,7 +259,7 @@ class ListEvaluation {
     ListChange change = changed(longer, phi);
     for (std::size_t i = 0; i < added.count(); ++i) {
       change.added.push_back(pose_of(*study_.first().model, added[i]));
-      change.added.back().id = int(poses_.count() + i) + 1;
+      change.added.back().id = id_of(int(poses_.count() + i));
     }
     return change;
   }

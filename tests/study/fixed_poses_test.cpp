@@ -10,6 +10,7 @@
 
 #include "posewright/lists/read_poses.hpp"
 #include "posewright/problem/read_problem.hpp"
+#include "posewright/results/evaluation.hpp"
 #include "posewright/results/plan.hpp"
 #include "posewright/study/variant.hpp"
 #include "posewright/support/error.hpp"
@@ -156,6 +157,36 @@ TEST_F(FixedPoses, FiguresOfTheWrittenPlanAreThoseOfEvaluate) {
   EXPECT_THAT(plan_summary(found), HasSubstr("6 poses (2 fixed) in addition to 1 measured, for"));
   EXPECT_THAT(plan_summary(found), HasSubstr("any plan of 6 that has the 2 fixed, all others of these"));
   EXPECT_THAT(poses_csv(found), HasSubstr("\n2,0.2,0.3\n")) << "still to be measured";
+}
+
+TEST_F(FixedPoses, APoseToDropOrToAddIsCalledAsInTheTable) {
+  const Problem problem = this->problem("criterion: o1, poses: 6, candidates: 60, minimum_distance: 40 deg");
+  const auto coordinates = pose_coordinates(problem);
+  EvaluateOptions options;
+  options.run.measured = read_poses(folder_.write("measured.csv", csv({{-1, 1}, {1, 0.5}})), coordinates);
+  options.drop = options.add = 1;
+  const PoseList list = read_poses(
+      folder_.write("list.csv", csv({{0.2, 0.3}, {0.1, 1.4}, {-2, -1}, {1.5, -1.2}, {2.5, 0.7}})), coordinates);
+  const PoseListEvaluation e = evaluate_problem(problem, list, options, Monitor{});
+  ASSERT_TRUE(e.drop && e.add);
+  ASSERT_EQ(e.drop->poses.size(), 1U);
+  ASSERT_EQ(e.plan.poses.size(), 7U);
+  // Of all poses that may be dropped the one that costs least; what was measured cannot be.
+  double most = 0;
+  int which = 0;
+  for (const PlannedPose& pose : e.plan.poses)
+    if (!pose.measured && pose.without > most) {
+      most = pose.without;
+      which = pose.id;
+    }
+  EXPECT_EQ(e.drop->poses.front(), which);
+  EXPECT_NEAR(e.drop->efficiency, most, 1e-9);
+  EXPECT_EQ(e.add->added.front().id, 8);
+  EXPECT_THAT(evaluation_text(e), HasSubstr(fmt::format("Drop first: {} (", which)));
+  EXPECT_THAT(evaluation_text(e), HasSubstr("Add: 1 pose gives "));
+  const auto& rejected = e.plan.statistics.rejected;
+  EXPECT_TRUE(
+      std::ranges::any_of(rejected, [](const auto& r) { return r.first == "too near to a pose measured already"; }));
 }
 
 TEST_F(FixedPoses, OfAMarkedListThoseThatAreMarked) {

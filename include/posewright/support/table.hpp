@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace posewright {
@@ -26,6 +27,9 @@ class Table {
   std::vector<std::vector<std::string>> rows_;
   std::string align_;
 };
+
+/// "1 pose", "2 poses": nouns whose plural ends in s.
+std::string counted(long count, std::string_view noun);
 
 /// "97.86 %" for 0.97869: rounded down, because what is stated as reached must be.
 std::string percent(double share);

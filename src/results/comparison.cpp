@@ -226,9 +226,11 @@ std::string alias_in_full(const VariantAlias& a) {
   if (a.sources.empty()) return text + "all its effects are fitted; no bias\n";
   const auto spreads =
       std::count_if(a.sources.begin(), a.sources.end(), [](const AliasSource& s) { return s.spread > 0; });
-  text += fmt::format(
-      "{} nominal values differ, {} parameters are not fitted and one tolerance off each\n",
-      std::count_if(a.sources.begin(), a.sources.end(), [](const AliasSource& s) { return s.shift != 0; }), spreads);
+  const auto shifts =
+      std::count_if(a.sources.begin(), a.sources.end(), [](const AliasSource& s) { return s.shift != 0; });
+  text += fmt::format("{} {}, {} {} not fitted and one tolerance off{}\n", counted(shifts, "nominal value"),
+                      shifts == 1 ? "differs" : "differ", counted(spreads, "parameter"), spreads == 1 ? "is" : "are",
+                      spreads == 1 ? "" : " each");
   Table table({"parameter", "bias by nominal", "fitted", "by tolerance", "predicted σ", "tolerance", "bias/σ",
                "bias/tolerance"});
   for (const AliasedParameter& p : a.parameters) {

@@ -26,7 +26,7 @@ std::string discrimination_text(const Discrimination& test, const std::string& f
   // Rounded down, as what is promised must hold.
   const auto chance = [](double power) { return fmt::format("{:.1f} %", std::floor(power * 1e3) / 10); };
   const auto times = [&](const std::optional<int>& k) {
-    return k && *k > 1 ? fmt::format("; measured {} times {:.0f} %", *k, 100 * test.wanted) : "";
+    return k && *k > 1 ? fmt::format("; measured {} times, at least {:.0f} %", *k, 100 * test.wanted) : "";
   };
   std::string text = fmt::format("If {} is true, fitting {} leaves residuals of noncentrality {:.4g}", test.truth,
                                  fitted, test.noncentrality());

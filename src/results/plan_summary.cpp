@@ -25,13 +25,13 @@ std::string headline(const Plan& plan) {
     return p.sigma.has_value() && p.label.role == Role::nuisance;
   });
   const auto measured = std::count_if(plan.poses.begin(), plan.poses.end(), [](const auto& p) { return p.measured; });
-  std::string text = fmt::format("{} poses", long(plan.poses.size()) - measured);
+  std::string text = counted(long(plan.poses.size()) - measured, "pose");
   if (const auto fixed = fixed_poses(plan); fixed > 0) text += fmt::format(" ({} fixed)", fixed);
   if (measured > 0) text += fmt::format(" in addition to {} measured,", measured);
   if (!plan.variant.empty())
     text += fmt::format(" for variant{} {}", plan.variants.size() > 1 ? "s" : "", plan.variant);
-  text += fmt::format(": {} parameters", kept - nuisance);
-  if (nuisance > 0) text += fmt::format(" and {} nuisance parameters", nuisance);
+  text += ": " + counted(kept - nuisance, "parameter");
+  if (nuisance > 0) text += " and " + counted(nuisance, "nuisance parameter");
   if (plan.interrupted) text += " (search interrupted: best plan so far)";
   text += "\n";
   if (!plan.problem.parameters.file.empty())
@@ -150,12 +150,14 @@ std::string robust_text(const Plan& plan) {
     return "Robots drawn from the tolerances: stopped before all were evaluated; the plan is for the nominal robot.\n";
   const auto lost = std::count(robust.efficiency.begin(), robust.efficiency.end(), 0.0);
   std::string text = fmt::format(
-      "On {} robots drawn from the tolerances, each against its own best plan: {} {} (a tenth of them below {}, lowest "
+      "On {} robots drawn from the tolerances, each against its own best plan: {} {} (a tenth of them at most {}, "
+      "lowest "
       "{}).{}\n",
       robust.draws, percent(robust.value), on, percent(quantile(robust.efficiency, 0.1)),
       percent(quantile(robust.efficiency, 0.0)),
-      robust.bound < 0.9995 ? fmt::format(" No plan of these candidates has more than {}.", percent(robust.bound))
-                            : "");
+      robust.bound < 0.999
+          ? fmt::format(" No plan of these candidates has more than {}.", at_most_percent(robust.bound))
+          : "");
   if (lost > 0) text += fmt::format("It does not determine all parameters of {} of them.\n", lost);
   if (robust.unreached > 0)
     text += fmt::format(
@@ -204,6 +206,13 @@ std::string effect_text(const Plan& plan) {
                     noise, shown_value(*effect.by_effect, "m"), shown_value(*effect.interpolated, "m"));
 }
 
+/// What σ of parameters contains.
+std::string sigma_basis(const Plan& plan) {
+  if (!plan.unmodelled && !plan.prior) return "from the stated noise alone, for a complete model";
+  return fmt::format("from the stated noise{}{}{}", plan.unmodelled ? " and the unmodelled effect" : "",
+                     plan.unmodelled && plan.prior ? "," : "", plan.prior ? " with tolerances as prior knowledge" : "");
+}
+
 /// Where only one frame is of interest, and no robot: how well it is known afterwards.
 std::string frame_text(const Plan& plan) {
   std::string frame;
@@ -219,9 +228,10 @@ std::string frame_text(const Plan& plan) {
     (turns ? turn : shift) += *p.sigma * *p.sigma;
   }
   if (frame.empty() || plan.variant.empty()) return {};
-  return fmt::format("Predicted σ of {} after calibration: {}{}{}, from noise alone\n", frame,
+  return fmt::format("Predicted σ of {} after calibration: {}{}{}, {}\n", frame,
                      shift > 0 ? shown_value(std::sqrt(shift), "m") : "", shift > 0 && turn > 0 ? " and " : "",
-                     turn > 0 ? shown_value(std::sqrt(turn), "rad") : "");
+                     turn > 0 ? shown_value(std::sqrt(turn), "rad") : "",
+                     plan.unmodelled || plan.prior ? sigma_basis(plan) : "from noise alone");
 }
 
 std::string accuracy_text(const Plan& plan) {
@@ -265,7 +275,7 @@ std::string parameter_table(const Plan& plan) {
     if (p.sigma)
       table.row({name(p), shown_value(p.label.nominal, p.label.unit), shown_value(p.label.tolerance, p.label.unit),
                  shown_value(*p.sigma, p.label.unit), fmt::format("{:.3f}", *p.sigma / p.label.tolerance), verdict(p)});
-  return table.text() + "Predicted σ: from the stated noise alone, for a complete model.\n";
+  return table.text() + fmt::format("Predicted σ: {}.\n", sigma_basis(plan));
 }
 
 std::string dropped_text(const Plan& plan) {

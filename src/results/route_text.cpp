@@ -192,7 +192,8 @@ std::string route_summary(const Route& route) {
   if (!text.empty()) text += ".\n";
   if (route.problem_changed) text += "The problem file has changed since the plan was made.\n";
   const double total = route.travel_seconds() + route.change_seconds();
-  text += fmt::format("{} poses in {} of motion", route.poses.size(), seconds_text(route.travel_seconds()));
+  text += fmt::format("{} in {} of motion", counted(long(route.poses.size()), "pose"),
+                      seconds_text(route.travel_seconds()));
   if (route.change_seconds() > 0) text += fmt::format(" and {} of changes", seconds_text(route.change_seconds()));
   if (route.settle > 0) text += fmt::format(", {} at rest", seconds_text(route.settle_seconds()));
   if (route.reading_seconds() > 0) text += fmt::format(", {} of readings", seconds_text(route.reading_seconds()));
@@ -203,10 +204,13 @@ std::string route_summary(const Route& route) {
                         route.reading_seconds() > 0 ? "" : ", readings not counted (motion: reading)");
   text += fmt::format("At the {:g} % of exported programs about {} of motion (export --speed).\n", usual_percent,
                       seconds_text(100 / usual_percent * route.travel_seconds()));
-  if (route.planned_seconds > 0)
-    text += fmt::format("The plan's own order takes {} or more: {:.0f} % saved{}.\n",
-                        seconds_text(route.planned_seconds), 100 * (1 - total / route.planned_seconds),
+  if (route.planned_seconds > 0) {
+    // A lower bound: where the ways around obstacles are longer than that, nothing is known to be saved.
+    const double saved = 100 * (1 - total / route.planned_seconds);
+    text += fmt::format("The plan's own order takes {} or more{}{}.\n", seconds_text(route.planned_seconds),
+                        saved >= 0.5 ? fmt::format(": {:.0f} % saved", saved) : "",
                         route.optimal ? "; no order of such motions is shorter" : "");
+  }
   if (route.interrupted) text += "The search was ended early; this is the shortest order by then.\n";
   text += "\n" + steps_table(route) + nearest_text(route.motions, between_stops) + references_text(route);
   for (const SkippedPose& skipped : route.unreachable)

@@ -6,6 +6,7 @@
 #include "posewright/criterion/registry.hpp"
 #include "posewright/study/study.hpp"
 #include "posewright/study/unmodelled.hpp"
+#include "posewright/support/table.hpp"
 
 namespace posewright {
 namespace {
@@ -21,7 +22,9 @@ struct EnoughPoses {
   std::optional<int> smallest;
   bool enough() const { return smallest && poses >= enough_poses * *smallest; }
   std::string few() const {
-    return fmt::format("{} poses are few where {} determine the parameters", poses, smallest.value_or(poses));
+    if (!smallest) return "no number of poses was found that determines the parameters";
+    return fmt::format("{} {} few where {} determine the parameters", counted(poses, "pose"), poses == 1 ? "is" : "are",
+                       *smallest);
   }
 };
 

@@ -218,14 +218,19 @@ TEST_F(UnmodelledEffects, FirstFigureOfAVariantWithAnEffectCountsThatOne) {
   EXPECT_NEAR(plan.expected->with[0].size, 2e-4, 1e-12);
   EXPECT_NEAR(plan.expected->with[0].error / *plan.rho0, 1, 1e-6);
   EXPECT_NEAR(plan.expected->by_noise / *plan.unmodelled->by_noise, 1, 1e-6);
+  EXPECT_THAT(plan_summary(plan), HasSubstr("Predicted σ: from the stated noise and the unmodelled effect.\n"));
 }
 
 TEST_F(UnmodelledEffects, FirstFigureNamesTheRequiredAccuracy) {
-  const Plan plan = judged(problem("",
-                                   "{variant: short, poses: 8, require: {accuracy: 0.3 mm}, test_poses: {at: [[0.5, "
-                                   "1], [-1, 1.4]]}}"),
-                           eight);
+  Plan plan = judged(problem("",
+                             "{variant: short, poses: 8, require: {accuracy: 0.3 mm}, test_poses: {at: [[0.5, "
+                             "1], [-1, 1.4]]}}"),
+                     eight);
   EXPECT_THAT(plan_summary(plan), HasSubstr("from noise alone; required 0.3 mm\n"));
+  EXPECT_THAT(plan_summary(plan), HasSubstr("Predicted σ: from the stated noise alone, for a complete model.\n"));
+  plan.prior = true;
+  EXPECT_THAT(plan_summary(plan),
+              HasSubstr("Predicted σ: from the stated noise with tolerances as prior knowledge.\n"));
 }
 
 /// What the best base does to the places: shifts and turns about the origin, each place's share of the weight.

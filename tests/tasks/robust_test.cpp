@@ -239,10 +239,13 @@ TEST_F(DrawnRobotsOfProblems, FiguresOfAPlanAreThoseOfItsWrittenPosesByGeometry)
 }
 
 TEST_F(DrawnRobotsOfProblems, SmallTolerancesAreNotWorthAPlanOfTheirOwn) {
-  const Plan plan = plan_problem(arm(", robust: {draws: 10}", "1e-5"), {}, Monitor());
+  Plan plan = plan_problem(arm(", robust: {draws: 10}", "1e-5"), {}, Monitor());
   ASSERT_TRUE(plan.robust);
   EXPECT_FALSE(plan.robust->worth_it());
   EXPECT_THAT(plan_summary(plan), HasSubstr("is not worthwhile, it gains 0.00 %"));
+  // What no plan exceeds is rounded up.
+  plan.robust->bound = 0.95128;
+  EXPECT_THAT(plan_summary(plan), HasSubstr("No plan of these candidates has more than 95.2 %."));
 }
 
 TEST_F(DrawnRobotsOfProblems, ALegThatIsMovedByItsActuatorsStandsWhereTheDrawnRobotSettles) {

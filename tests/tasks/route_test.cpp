@@ -163,13 +163,18 @@ TEST(Route, ReplacesLostPosesByOthersThatAddTheMostToTheRest) {
 TEST(Route, StatesItsTimeAtTheSpeedOfProgramsToo) {
   const TemporaryFolder folder;
   const Problem problem = problem_of(folder, "[j2.offset, j3.offset]");
-  const Route route = route_problem(
+  Route route = route_problem(
       problem, poses_given({{0.5, 0.2, 0.3, 1, -0.4, 2}, {-1, 0, 0.3, 0.2, 1, 1}}, pose_coordinates(problem)),
       from_home(), Monitor{});
   const double seconds = route.travel_seconds();
   ASSERT_LT(10 * seconds, 120);
   EXPECT_THAT(route_summary(route), HasSubstr(fmt::format("2 poses in {:.1f} s of motion", seconds)));
   EXPECT_THAT(route_summary(route), HasSubstr(fmt::format("10 % of exported programs about {:.1f} s", 10 * seconds)));
+  // The planned order's time is a lower bound: where it is less, nothing is known to be saved.
+  route.planned_seconds = 0.9 * route.travel_seconds();
+  EXPECT_THAT(route_summary(route), testing::Not(HasSubstr("saved")));
+  route.planned_seconds = 2 * (route.travel_seconds() + route.change_seconds());
+  EXPECT_THAT(route_summary(route), HasSubstr(" or more: 50 % saved"));
 }
 
 }  // namespace

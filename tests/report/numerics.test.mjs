@@ -20,8 +20,8 @@ import { between, exaggerated } from '../../report/src/view/interpolate.js';
 import { amplification, amplified, largestDeviation } from '../../report/src/numerics/leg_points.js';
 import { counts, valuesOf } from '../../report/src/numerics/stations.js';
 import { posesCsv } from '../../report/src/save_csv.js';
-import { shell, shellFile } from '../../report/src/sections/reproduce.js';
-import { instruments } from '../../report/src/text/sentences.js';
+import { commands, shell, shellFile } from '../../report/src/sections/reproduce.js';
+import { instruments, proof, sigmaOf } from '../../report/src/text/sentences.js';
 import { coordinate, number, percentDown, quantity } from '../../report/src/text/units.js';
 
 const near = (value, expected, tolerance = 1e-12) =>
@@ -247,6 +247,45 @@ test('a plan says what each instrument of its list gives', () => {
       'Instrument camera reads 1 pose and gives 1.0 % of the information; without it 98.86 % would be left.',
   );
   assert.equal(instruments({}), '');
+});
+
+test('a plan says what it is compared with, and what it keeps more of than all others', () => {
+  const poses = (fixed) => Array.from({ length: 6 }, (_, k) => ({ id: k + 1, fixed: k < fixed }));
+  const candidates = { efficiency: 0.98765, log_det_bound: 1, count: 300, repeats: 'forbid', optimal: true, minimum_distance: null };
+  const plan = (fixed, reserve) => ({ poses: poses(fixed), criterion: { name: 'o1', reserve }, certificate: { candidates } });
+  assert.equal(
+    proof(plan(0, false)),
+    'Proved: the plan is at least 98.76 % as informative as any other 6 of the 300 candidate poses, none measured twice. ' +
+      'No plan of these candidates is better: every other one is ruled out.',
+  );
+  assert.match(proof(plan(2, false)), /as any plan of 6 that has the 2 fixed, all others of the 300 candidate poses,/);
+  assert.match(proof(plan(2, false)), /No plan of these candidates and the fixed poses is better/);
+  assert.match(proof(plan(0, true)), /No plan of these candidates keeps more when its worst pose is lost/);
+});
+
+test('commands to repeat a plan name the list that it chose from and every key that an option changed', () => {
+  const plan = {
+    problem: { file: 'p.yaml', set: [{ key: 'design.robust', value: '10' }, { key: 'design.poses', value: '6' }, { key: 'measurement.device.noise', value: '0.05 mm' }] },
+    criterion: { name: 'o1', scaling: 'tolerance', prior: 'none' },
+    certificate: {},
+    statistics: { candidates_feasible: 40, candidates_from: 'list of poses.csv', restarts: 2 },
+    method: 'exchange',
+    poses: [{}, {}],
+    seed: 3,
+  };
+  const [, made, judged] = commands(/** @type {any} */ ({ plan, route: null }));
+  assert.equal(
+    made,
+    "posewright plan p.yaml --criterion o1 --method exchange --poses 2 --candidates-from 'list of poses.csv' --restarts 2 " +
+      "--set design.robust=10 --set 'measurement.device.noise=0.05 mm' --seed 3 -o plan.json --poses-csv poses.csv",
+  );
+  assert.match(judged, /^posewright evaluate p.yaml poses.csv --set 'design.candidates_from=list of poses.csv' --set design.robust=10 /);
+});
+
+test('a predicted σ has what the plan counts', () => {
+  const criterion = (prior) => ({ criterion: { prior } });
+  assert.equal(sigmaOf(criterion('none')), 'σ is the standard deviation that the measurement noise alone leaves in a parameter');
+  assert.match(sigmaOf({ ...criterion('tolerance'), unmodelled: {} }), /noise and the unmodelled effect leave in a parameter, with tolerances as prior/);
 });
 
 test('a camera reads where it is named and where it reads with others', () => {

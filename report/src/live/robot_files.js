@@ -20,7 +20,7 @@ export function planAmong(files) {
 }
 
 /** Whether meshes are among dropped files. @param {Map<string, Uint8Array>} files */
-export const hasMesh = (files) => [...files.keys()].some((path) => /\.(stl|obj|ply|dae)$/i.test(path));
+export const hasMesh = (files) => [...files.keys()].some((path) => /\.(stl|obj|dae)$/i.test(path));
 
 /** The robot among dropped files; undefined: none. @param {Map<string, Uint8Array>} files */
 export function robotAmong(files) {

@@ -100,7 +100,7 @@ function accuracySection(c) {
   return section(
     'accuracy',
     'Accuracy',
-    'Noise alone, as if the variant were the case. Parameters: of interest, and nuisance beside them; mean: geometric, of those of interest; condition: largest over smallest singular value in units of tolerance.',
+    'By noise, and by the effect of a variant that has unmodelled, as if the variant were the case. Parameters: of interest, and nuisance beside them; mean: geometric, of those of interest; condition: largest over smallest singular value in units of tolerance.',
     table(header, rows, 'Accuracy'),
     h('div', { class: 'plots' }, expectedPlots(c)),
   );

@@ -35,7 +35,7 @@ function tiles(s) {
       ? tile(quantity(usualError(best.expected_error), 'm', 3), 'position error', 'predicted from the best place')
       : null,
     ratio.length > 1
-      ? tile(`${number(Math.max(...ratio), 4)} ×`, 'σ from the worst', `of the ${ratio.length} planned in full, against the best`)
+      ? tile(`${number(Math.max(...ratio), 4)} ×`, 'σ from the worst', `of the ${ratio.length} planned ${best.in_full ? 'in full' : 'quickly'}, against the best`)
       : null,
     tile(percent(best.feasible_share), 'feasible', 'of the configurations drawn, from the best place'),
   ];

@@ -120,8 +120,9 @@ const share = (part) => (part > 0 && part < 5e-4 ? '< 0.1 %' : percent(part));
 export function searchSection(plan) {
   const s = plan.statistics;
   const rejected = Object.entries(s.rejected ?? {}).sort((a, b) => b[1] - a[1]);
+  const listed = s.candidates_from;
   const facts = [
-    ['candidates drawn', s.candidates_drawn.toLocaleString('en')],
+    [listed ? 'different candidates listed' : 'candidates drawn', s.candidates_drawn.toLocaleString('en')],
     [
       'of these feasible',
       `${s.candidates_feasible.toLocaleString('en')} (${percent(s.candidates_feasible / s.candidates_drawn)})`,
@@ -138,7 +139,7 @@ export function searchSection(plan) {
   return section(
     'search',
     'Candidates and search',
-    'Poses are chosen from candidates drawn at random in the workspace. Where many are lost to one cause, moving that thing gains room.',
+    `Poses are chosen from ${listed ? `the candidates in ${listed}` : 'candidates drawn at random in the workspace'}. Where many are lost to one cause, moving that thing gains room.`,
     h(
       'div',
       { class: 'split' },
@@ -149,7 +150,7 @@ export function searchSection(plan) {
         rejected.length === 0
           ? h('p', {}, 'None was rejected.')
           : table(
-              ['rejected because', '#draws', '#share'],
+              ['rejected because', listed ? '#candidates' : '#draws', '#share'],
               rejected.map(([reason, count]) => [
                 reason,
                 count.toLocaleString('en'),

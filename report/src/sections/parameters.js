@@ -1,4 +1,5 @@
 import { h, section } from '../dom.js';
+import { sigmaOf } from '../text/sentences.js';
 import { number, quantity } from '../text/units.js';
 
 const keyOf = (variant, name) => `${variant ?? ''}\n${name}`;
@@ -100,7 +101,7 @@ export function parametersSection(list) {
   return section(
     'parameters',
     'Parameters and how well they will be known',
-    'σ is the standard deviation that the measurement noise alone leaves in a parameter; tolerance is how far it may be off before calibration (1σ). A full bar means that measuring tells no more than the tolerance did.',
+    `${sigmaOf(list.report.plan)}; tolerance is how far it may be off before calibration (1σ). A full bar means that measuring tells no more than the tolerance did.`,
     h(
       'div',
       { class: 'scroll', tabindex: '0', role: 'region', 'aria-label': 'Parameters' },

@@ -13,6 +13,17 @@ export const shell = (value) => {
 /** A file's name as a word that is no option. @param {string} name */
 export const shellFile = (name) => shell(name.startsWith('-') ? `./${name}` : name);
 
+/** Keys that options of their own state, or files of poses. */
+const stated = new Set(
+  ['variant', 'criterion', 'method', 'poses', 'candidates', 'candidates_from', 'restarts', 'repeats', 'scaling', 'prior', 'reserve'].map(
+    (key) => `design.${key}`,
+  ),
+);
+
+/** What options changed besides. @param {any} plan */
+const otherKeys = (plan) =>
+  (plan.problem.set ?? []).filter(({ key }) => !stated.has(key)).map(({ key, value }) => `--set ${shell(`${key}=${value}`)}`);
+
 /** Options of the search, as far as plan.json tells. @param {any} plan @param {string} variant */
 function planOptions(plan, variant) {
   const { criterion, certificate, statistics } = plan;
@@ -22,25 +33,32 @@ function planOptions(plan, variant) {
     `--criterion ${shell(criterion.name)}`,
     `--method ${shell(plan.method)}`,
     `--poses ${plan.curve?.length > 0 ? 'auto' : newPoses(plan).length}`,
-    `--candidates ${shell(statistics.candidates_feasible)}`,
+    statistics.candidates_from
+      ? `--candidates-from ${shellFile(statistics.candidates_from)}`
+      : `--candidates ${shell(statistics.candidates_feasible)}`,
     `--restarts ${shell(statistics.restarts)}`,
     repeats === 'forbid' ? '' : `--repeats ${shell(repeats)}`,
     criterion.scaling === 'tolerance' ? '' : `--scaling ${shell(criterion.scaling)}`,
     criterion.prior === 'tolerance' ? '--prior tolerance' : '',
     criterion.reserve ? '--reserve' : '',
+    ...otherKeys(plan),
     `--seed ${shell(plan.seed)}`,
   ].filter(Boolean);
 }
 
 /** @param {import('../types.js').Report} report */
-function commands({ plan, route }) {
+export function commands({ plan, route }) {
   const file = shellFile(plan.problem.file);
   const several = (plan.variants ?? []).length > 1;
   const variant = plan.variant && !several ? `--variant ${shell(plan.variant)}` : '';
+  const from = plan.statistics.candidates_from;
+  const candidates = from
+    ? `--set ${shell(`design.candidates_from=${from}`)}`
+    : `--candidates ${shell(plan.statistics.candidates_feasible)}`;
   const lines = [
     `sha256sum ${file}`,
     `posewright plan ${file} ${planOptions(plan, variant).join(' ')} -o plan.json --poses-csv poses.csv`,
-    `posewright evaluate ${file} poses.csv ${variant} --candidates ${shell(plan.statistics.candidates_feasible)} --seed ${shell(plan.seed)}`.replace(/ {2,}/g, ' '),
+    `posewright evaluate ${file} poses.csv ${[variant, candidates, ...otherKeys(plan), `--seed ${shell(plan.seed)}`].filter(Boolean).join(' ')}`,
   ];
   if (!route) return lines;
   const ends = `${route.from_home ? '--from-home ' : ''}${route.closed ? '--closed ' : ''}`;
@@ -70,7 +88,7 @@ export function reproduceSection(report) {
     h(
       'p',
       { class: 'note' },
-      'Poses measured before (--augment) and a time limit are not in the plan: give them again. ' +
+      'Poses measured before (--augment), fixed poses (--fixed) and a time limit are not in the plan: give them again. ' +
         'A search that was ended by a time limit or by hand cannot be repeated exactly.',
     ),
   );

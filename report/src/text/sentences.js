@@ -62,6 +62,13 @@ export function worth(plan) {
   );
 }
 
+/** What a predicted σ contains. @param {any} plan */
+export function sigmaOf(plan) {
+  const effect = plan.unmodelled ? ' and the unmodelled effect leave' : ' alone leaves';
+  const prior = plan.criterion.prior === 'tolerance' ? ', with tolerances as prior knowledge' : '';
+  return `σ is the standard deviation that the measurement noise${effect} in a parameter${prior}`;
+}
+
 /** What each instrument of a list gives. @param {any} plan */
 export function instruments(plan) {
   const each = (plan.instruments ?? []).map(
@@ -86,10 +93,15 @@ export function proof(plan) {
       : c.repeats === 'allow'
         ? ', repeats allowed'
         : `, each at most ${c.repeats} times`;
+  const fixed = newPoses(plan).filter((p) => p.fixed).length;
+  const others = fixed > 0 ? `any plan of ${newPoses(plan).length} that has the ${fixed} fixed, all others` : `any other ${newPoses(plan).length}`;
+  const best = plan.criterion.reserve
+    ? 'keeps more when its worst pose is lost: all others are ruled out'
+    : 'is better: every other one is ruled out';
   return (
-    `Proved: the plan is at least ${percentDown(c.efficiency)} ${as} any other ${newPoses(plan).length} of the ${c.count.toLocaleString('en')} candidate poses${repeats}.` +
+    `Proved: the plan is at least ${percentDown(c.efficiency)} ${as} ${others} of the ${c.count.toLocaleString('en')} candidate poses${repeats}.` +
     (c.optimal
-      ? ` No plan of these candidates${c.minimum_distance ? ' that keeps its poses apart' : ''} is better: every other one is ruled out.`
+      ? ` No plan of these candidates${fixed > 0 ? ' and the fixed poses' : ''}${c.minimum_distance ? ' that keeps its poses apart' : ''} ${best}.`
       : '')
   );
 }

@@ -8,8 +8,8 @@ import { addButtons, thingsPanel } from '../things_panel.js';
 export function cellStep(live) {
   const { project } = live;
   const take = (files) => {
-    const meshes = [...files].filter(([path]) => /\.(stl|obj|ply|dae)$/i.test(path));
-    if (meshes.length === 0) return live.complain('A body of the cell is a mesh: .stl, .obj, .ply or .dae.');
+    const meshes = [...files].filter(([path]) => /\.(stl|obj|dae)$/i.test(path));
+    if (meshes.length === 0) return live.complain('A body of the cell is a mesh: .stl, .obj or .dae.');
     project.add(meshes.map(([path, bytes]) => [joined(folderOf(project.problem), nameOf(path)), bytes]));
     project.write(meshes.reduce((text, [path]) => added(text, 'mesh', [1, 0, 0], nameOf(path)), project.text));
   };

@@ -234,7 +234,7 @@ std::vector<DesignKey> make_keys() {
        located_text(&DesignSpec::method)},
       {"design.poses", "poses", "N|auto",
        fmt::format(R"("anyOf": [{{{}}}, {{"const": "auto"}}])", whole_schema(1, most_stated_poses)), "",
-       "Number of poses; auto: the smallest number that meets the requirements.", read_poses},
+       "Number of poses; auto, not for compare: the smallest number that meets the requirements.", read_poses},
       {"design.require", "", "", R"("type": "object", "minProperties": 1)", "",
        "Requirements for poses: auto (95 % at every test pose) and for a calibration.",
        [](const Value& value, DesignReading& reading) {

@@ -80,7 +80,7 @@ void bind_pose(py::module_& m) {
 
 void bind_certificate(py::module_& m) {
   using C = Certificate;
-  py::class_<C::Workspace>(m, "WorkspaceCertificate", "What a search says over the whole workspace; no proof.")
+  py::class_<C::Workspace>(m, "WorkspaceCertificate", "What a proof, or else a search, says over the whole workspace.")
       .def_readonly("efficiency", &C::Workspace::efficiency)
       .def_readonly("bound", &C::Workspace::bound)
       .def_readonly("max_sensitivity_ratio", &C::Workspace::max_sensitivity_ratio)
@@ -95,6 +95,8 @@ void bind_certificate(py::module_& m) {
       .def_readonly("count", &C::count, "candidates")
       .def_readonly("found", &C::found, "how many of them were found beyond those drawn")
       .def_readonly("repeats", &C::repeats, "what the bound allows: forbid, allow or a number")
+      .def_readonly("apart", &C::apart, "the bound is of plans alone that keep the minimum distance")
+      .def_readonly("limited", &C::limited, "the bound is of plans alone that keep `most` of each instrument")
       .def_readonly("workspace", &C::workspace, "the same over the whole workspace, or None")
       .def("__repr__", [](const C& c) {
         return py::str("<Certificate: at least {} of the best of {} candidates>")

@@ -34,6 +34,8 @@ Json certificate_json(const Plan& plan) {
   candidates["count"] = c.count;
   candidates["found"] = c.found;
   candidates["repeats"] = c.repeats;
+  candidates["apart"] = c.apart;
+  candidates["limited"] = c.limited;
   candidates["optimal"] = plan.proved_optimal;
   candidates["minimum_distance"] = plan.minimum_distance.empty() ? Json(nullptr) : Json(plan.minimum_distance);
   Json workspace = nullptr;

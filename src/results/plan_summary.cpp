@@ -76,8 +76,10 @@ std::string certificate_text(const Plan& plan) {
   const std::string found = c.found > 0 ? fmt::format(" ({} found beyond those drawn)", c.found) : "";
   const long fixed = fixed_poses(plan);
   const std::string with_fixed = fixed > 0 ? fmt::format(" that has the {} fixed, all others", fixed) : "";
-  std::string text = fmt::format("At least {} {} any plan of {}{} of these {} candidates{}{}.\n", percent(c.efficiency),
-                                 as, poses, with_fixed, c.count, found, policy);
+  std::string text =
+      fmt::format("At least {} {} any plan of {}{} of these {} candidates{}{}{}{}.\n", percent(c.efficiency), as, poses,
+                  with_fixed, c.count, found, policy, c.apart ? ", with poses as far apart" : "",
+                  c.limited ? ", with no more poses of an instrument than its `most`" : "");
   if (plan.proved_optimal)
     text += fmt::format("No plan of these candidates{}{} {}.\n", fixed > 0 ? " and the fixed poses" : "",
                         plan.minimum_distance.empty() ? "" : " that keeps its poses apart",

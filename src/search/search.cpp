@@ -125,7 +125,9 @@ void limit(Certificate& certificate, const BlockArray& blocks, const Spacing& sp
   const LimitedChoice choice{blocks, spacing, request.poses, std::min(request.repeats.most, request.poses),
                              bound_options(request, joined.prior).prior};
   const double bound = limited_bound(choice, function, approximate, request.planner.threads, monitor);
-  certificate.bound = std::min(certificate.bound, bound + offset);
+  if (!(bound + offset < certificate.bound)) return;
+  certificate.bound = bound + offset;
+  certificate.limited = true;
 }
 
 /// All blocks of both.
@@ -409,8 +411,10 @@ class DesignSearch {
     else if (!goes_between() && is_limited()) limit(joined_.blocks, *request_.spacing);
     tighten(certificate, spectral_, degree_ == 0);
     // A planner that proves something knows more than the weights alone.
-    if (result_.design.bound && !request_.reserve)
-      certificate.bound = std::min(certificate.bound, *result_.design.bound + offset_);
+    if (!result_.design.bound || request_.reserve || !(*result_.design.bound + offset_ < certificate.bound)) return;
+    certificate.bound = *result_.design.bound + offset_;
+    certificate.apart = request_.spacing != nullptr && request_.spacing->keeps_distance();
+    certificate.limited = certificate.limited || has_limits(request_);
   }
 
   bool is_limited() const { return degree_ > 0 && request_.certify && has_limits(request_); }

@@ -12,6 +12,7 @@
 #include "posewright/study/pose_distance.hpp"
 #include "posewright/study/study.hpp"
 #include "posewright/support/error.hpp"
+#include "posewright/support/table.hpp"
 
 namespace posewright {
 namespace {
@@ -140,10 +141,8 @@ void PoseDistance::require_room(int poses) const {
   if (spacing.most.empty()) return;
   const auto left = std::accumulate(spacing.most.begin(), spacing.most.end(), std::int64_t{0});
   if (left < poses)
-    throw CannotDo(
-        fmt::format("measurement: by their `most`, the instruments may read {} further poses, and {} are "
-                    "wanted",
-                    left, poses));
+    throw CannotDo(fmt::format("measurement: by their `most`, the instruments may read {} of {} wanted",
+                               counted(long(left), "further pose"), poses));
 }
 
 std::optional<Spacing> PoseDistance::among(const Configurations& candidates) const {

@@ -20,6 +20,7 @@ import { between, exaggerated } from '../../report/src/view/interpolate.js';
 import { amplification, amplified, largestDeviation } from '../../report/src/numerics/leg_points.js';
 import { counts, valuesOf } from '../../report/src/numerics/stations.js';
 import { posesCsv } from '../../report/src/save_csv.js';
+import { leftOut } from '../../report/src/sections/calibration_tests.js';
 import { commands, shell, shellFile } from '../../report/src/sections/reproduce.js';
 import { instruments, proof, sigmaOf } from '../../report/src/text/sentences.js';
 import { coordinate, number, percentDown, quantity } from '../../report/src/text/units.js';
@@ -260,6 +261,8 @@ test('a plan says what it is compared with, and what it keeps more of than all o
   );
   assert.match(proof(plan(2, false)), /as any plan of 6 that has the 2 fixed, all others of the 300 candidate poses,/);
   assert.match(proof(plan(2, false)), /No plan of these candidates and the fixed poses is better/);
+  Object.assign(candidates, { apart: true, limited: true });
+  assert.match(proof(plan(0, false)), /none measured twice, with poses as far apart, with no more poses of an instrument than its most\. No/);
   assert.match(proof(plan(0, true)), /No plan of these candidates keeps more when its worst pose is lost/);
 });
 
@@ -280,6 +283,16 @@ test('commands to repeat a plan name the list that it chose from and every key t
       "--set design.robust=10 --set 'measurement.device.noise=0.05 mm' --seed 3 -o plan.json --poses-csv poses.csv",
   );
   assert.match(judged, /^posewright evaluate p.yaml poses.csv --set 'design.candidates_from=list of poses.csv' --set design.robust=10 /);
+});
+
+test('poses left out say whether the estimate is better, no better or worse than base and tool alone', () => {
+  const said = (gain, range = null) => leftOut({ gain, gains: gain > 2, gain_in_range: range });
+  assert.deepEqual([said(3).holds, said(3, 4).holds, said(1).holds, said(-3).holds], [true, true, false, false]);
+  assert.match(said(1).text, /^no better than/);
+  assert.match(said(-1).text, /^no better than/);
+  assert.match(said(-3).text, /^worse than/);
+  assert.match(said(null).text, /^worse than/); // it cannot predict at all
+  assert.match(said(3, 1).text, /not beyond chance over the range/);
 });
 
 test('a predicted σ has what the plan counts', () => {

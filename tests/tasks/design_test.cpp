@@ -214,8 +214,11 @@ TEST(Design, AProvedOptimumIsOneOfThePlansThatKeepTheirPosesApart) {
     EXPECT_TRUE(plan.proved_optimal);
     return plan_summary(plan);
   };
-  EXPECT_THAT(summary(""), HasSubstr("No plan of these candidates that keeps its poses apart is better: every other"));
-  EXPECT_THAT(summary(", repeats: allow"), HasSubstr("No plan of these candidates is better: every other one"));
+  EXPECT_THAT(summary(""),
+              HasSubstr(" without repeats, with poses as far apart.\nNo plan of these candidates that keeps "
+                        "its poses apart is better: every other"));
+  EXPECT_THAT(summary(", repeats: allow"),
+              HasSubstr(", repeats allowed.\nNo plan of these candidates is better: every other one"));
 }
 
 TEST(Design, KeepingPosesApartNeverMakesAPlanFail) {

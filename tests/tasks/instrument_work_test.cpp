@@ -57,6 +57,12 @@ TEST(InstrumentLimits, APlanIsJudgedByTheSameLimit) {
   const PoseList list = planned_poses(limited.problem, plan);
   EXPECT_NEAR(evaluate_problem(limited.problem, list, {}, Monitor{}).plan.certificate.efficiency,
               plan.certificate.efficiency, 1e-3);
+  // Plans with more poses of the gauge exceed that bound, so it is not said of them.
+  EXPECT_TRUE(plan.certificate.limited);
+  EXPECT_THAT(plan_summary(plan), HasSubstr(", with no more poses of an instrument than its `most`.\n"));
+  const Planar free;
+  EXPECT_GT(plan_problem(free.problem, {}, Monitor{}).log_det, plan.certificate.bound);
+  EXPECT_FALSE(plan_problem(free.problem, {}, Monitor{}).certificate.limited);
 }
 
 TEST(InstrumentLimits, MeasuredPosesCount) {
@@ -71,7 +77,7 @@ TEST(InstrumentLimits, MeasuredPosesCount) {
   EXPECT_EQ(read_by(plan_problem(problem, more, Monitor{}), "gauge"), 0);
   problem.design.poses->value = 2;
   EXPECT_THAT(message_of<std::runtime_error>([&] { plan_problem(problem, more, Monitor{}); }),
-              HasSubstr("by their `most`, the instruments may read 1 further poses, and 2 are wanted"));
+              HasSubstr("by their `most`, the instruments may read 1 further pose of 2 wanted"));
 }
 
 TEST(InstrumentLimits, AnInstrumentAloneHasItsKeysElsewhere) {

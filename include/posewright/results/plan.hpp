@@ -84,6 +84,8 @@ struct Certificate {
   std::size_t count = 0;               ///< candidates
   std::size_t found = 0;               ///< how many of them were found by searches, beyond those drawn
   std::string repeats = "forbid";      ///< what the bound allows: forbid, allow or a number
+  bool apart = false;                  ///< the bound is of plans alone that keep the minimum distance
+  bool limited = false;                ///< and of those within the numbers of poses of instruments (`most`)
   struct Workspace {
     double efficiency = 0.0, bound = 0.0, max_sensitivity_ratio = 1.0;
     std::string method;                 ///< how the largest sensitivity was sought

@@ -55,6 +55,18 @@ function notLinear(c) {
   return `no: σ are rough; ${profiled} intervals are by profile${c.intrinsic_curvature > 0.15 ? ', and rough, too' : ''}`;
 }
 
+/** What poses left out say of the estimate; beyond two standard errors it is no accident. @param {any} left left_out */
+export function leftOut(left) {
+  const refused = (text) => ({ holds: false, text });
+  if (!left.gains)
+    return left.gain === null || left.gain < -2
+      ? refused('worse than base and tool alone, beyond chance')
+      : refused('no better than base and tool alone beyond chance');
+  return typeof left.gain_in_range === 'number' && left.gain_in_range <= 2
+    ? refused('better between the measured poses, not beyond chance over the range of the joints')
+    : { holds: true, text: 'poses left out, predicted in units of the stated noise, against base and tool alone' };
+}
+
 /** @param {any} c */
 function rowsOf(c) {
   const rows = asked
@@ -70,9 +82,7 @@ function rowsOf(c) {
       'Are the parameters of use? (poses left out)',
       `${number(left.estimated, 3)} against ${number(left.placed, 3)}`,
       '',
-      left.gains
-        ? 'poses left out, predicted in units of the stated noise, against base and tool alone'
-        : h('span', { class: 'refused' }, 'no better than base and tool alone beyond chance'),
+      leftOut(left).holds ? leftOut(left).text : h('span', { class: 'refused' }, leftOut(left).text),
     ]);
   if (c.curvature !== null)
     rows.push([

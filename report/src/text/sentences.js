@@ -99,7 +99,7 @@ export function proof(plan) {
     ? 'keeps more when its worst pose is lost: all others are ruled out'
     : 'is better: every other one is ruled out';
   return (
-    `Proved: the plan is at least ${percentDown(c.efficiency)} ${as} ${others} of the ${c.count.toLocaleString('en')} candidate poses${repeats}.` +
+    `Proved: the plan is at least ${percentDown(c.efficiency)} ${as} ${others} of the ${c.count.toLocaleString('en')} candidate poses${repeats}${c.apart ? ', with poses as far apart' : ''}${c.limited ? ', with no more poses of an instrument than its most' : ''}.` +
     (c.optimal
       ? ` No plan of these candidates${fixed > 0 ? ' and the fixed poses' : ''}${c.minimum_distance ? ' that keeps its poses apart' : ''} ${best}.`
       : '')

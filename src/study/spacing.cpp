@@ -107,6 +107,7 @@ namespace {
 std::vector<int> left_for_instruments(const std::vector<MeasurementSpec>& instruments, std::size_t instrument,
                                       const Configurations& known) {
   std::vector<int> left;
+  left.reserve(instruments.size());
   for (const MeasurementSpec& one : instruments) left.push_back(one.most.value_or(std::numeric_limits<int>::max()));
   if (std::ranges::none_of(instruments, [](const MeasurementSpec& one) { return one.most.has_value(); })) return {};
   for (std::size_t i = 0; i < known.count(); ++i)

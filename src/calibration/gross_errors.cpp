@@ -209,9 +209,11 @@ double explained_rms(const MeasurementSpec& measurement, const IdentificationMod
                      const VariantColumns& columns, const std::vector<MeasuredPose>& poses,
                      const std::vector<double>& correction) {
   std::vector<std::vector<double>> corrections;
-  if (const auto* camera = std::get_if<CameraMeasurement>(&measurement.instrument))
+  if (const auto* camera = std::get_if<CameraMeasurement>(&measurement.instrument)) {
     for (const MeasuredPose& pose : poses) corrections.push_back(as_pictured(*camera, model, pose, correction));
-  else corrections.push_back(correction);
+  } else {
+    corrections.push_back(correction);
+  }
   const Eigen::MatrixXd rows = tolerance_rows(model, columns, poses, corrections);
   return rms_of_all(sizes_of_rows(beside_placing(model, columns, poses, corrections, rows), poses), poses);
 }

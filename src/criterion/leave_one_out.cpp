@@ -20,17 +20,6 @@ constexpr double rounding = 1e-9;
 
 int round16(int x) { return (x + 15) / 16 * 16; }
 
-double interest_log_det(const Eigen::LLT<Eigen::MatrixXd>& factor, int nuisance) {
-  const Eigen::Index interest = factor.rows() - nuisance;
-  return 2 * factor.matrixLLT().diagonal().tail(interest).array().log().sum();
-}
-
-/// ln det(I + ZᵀZ).
-double log_det_with(const Eigen::MatrixXd& Z) {
-  const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(Z.cols(), Z.cols());
-  return 2 * Eigen::LLT<Eigen::MatrixXd>(one + Z.transpose() * Z).matrixLLT().diagonal().array().log().sum();
-}
-
 }  // namespace
 
 LeaveOneOut::LeaveOneOut(const BlockArray& blocks, int nuisance, const Eigen::MatrixXd* prior)
@@ -66,9 +55,9 @@ Eigen::MatrixXd LeaveOneOut::swapped(int leave, int enter) const {
 void LeaveOneOut::factorise() {
   const Eigen::Index m = information_.cols();
   Eigen::LLT<Eigen::MatrixXd> factor(information_);
-  value_ = is_regular(factor) ? interest_log_det(factor, nuisance_) : -infinity;
+  value_ = is_regular(factor) ? log_det_of_last(factor, factor.rows() - nuisance_) : -infinity;
   if (!std::isfinite(value_)) factor.compute(information_ + ridge * Eigen::MatrixXd::Identity(m, m));
-  reference_ = interest_log_det(factor, nuisance_);
+  reference_ = log_det_of_last(factor, factor.rows() - nuisance_);
   inverse_factor_ = factor.matrixL().solve(Eigen::MatrixXd::Identity(m, m));
   d_is_of_now_ = false;
 }
@@ -112,7 +101,7 @@ void LeaveOneOut::leave(int k) {
   Eigen::LLT<Eigen::MatrixXd> factor(rest);
   const bool regular = std::isfinite(value_) && is_regular(factor);
   if (!regular) factor.compute(rest + ridge * Eigen::MatrixXd::Identity(m, m));
-  without_ = interest_log_det(factor, nuisance_);
+  without_ = log_det_of_last(factor, factor.rows() - nuisance_);
   rest_factor_ = factor.matrixL().solve(Eigen::MatrixXd::Identity(m, m));
   tile();
   prepare_bound(k, regular);
@@ -170,12 +159,12 @@ double LeaveOneOut::gain_bound(int j) const {
 
 double LeaveOneOut::gain(int j) const {
   const Eigen::MatrixXd Z = rest_factor_.triangularView<Eigen::Lower>() * blocks_.block(std::size_t(j)).transpose();
-  return without_ + log_det_with(Z) - log_det_with(Z.topRows(nuisance_)) - reference_;
+  return log_det_with_block(without_, Z, nuisance_) - reference_;
 }
 
 double LeaveOneOut::exact(int k, int j) const {
   const Eigen::LLT<Eigen::MatrixXd> factor(swapped(k, j));
-  return is_regular(factor) ? interest_log_det(factor, nuisance_) : -infinity;
+  return is_regular(factor) ? log_det_of_last(factor, factor.rows() - nuisance_) : -infinity;
 }
 
 }  // namespace posewright

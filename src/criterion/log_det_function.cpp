@@ -13,7 +13,7 @@ class LogDetExpansion : public Expansion {
  public:
   LogDetExpansion(const Eigen::LLT<Eigen::MatrixXd>& llt, int nuisance) : nuisance_(nuisance) {
     const Eigen::Index m = llt.rows();
-    value = 2 * llt.matrixLLT().diagonal().tail(m - nuisance).array().log().sum();
+    value = log_det_of_last(llt, m - nuisance);
     inverse_ = llt.matrixL().solve(Eigen::MatrixXd::Identity(m, m)).transpose();
     factor = inverse_;
     // The leading columns of L⁻ᵀ are the nuisance block's own inverse.
@@ -68,35 +68,23 @@ class LogDetExpansion : public Expansion {
   Eigen::MatrixXd inverse_;  // L⁻ᵀ
 };
 
-/// With M₀ = L Lᵀ and Z = L⁻¹ Jᵀ, nuisance rows first: ln det S(M₀) + ln det(I + ZᵀZ) − ln det(I + Z_nᵀ Z_n).
+/// Φ of M₀ = L Lᵀ, and what a block adds to it.
 class LogDetWithBlock : public BlockFunction {
  public:
-  LogDetWithBlock(const Eigen::LLT<Eigen::MatrixXd>& factor, int nuisance, double value)
+  LogDetWithBlock(const Eigen::LLT<Eigen::MatrixXd>& factor, int nuisance)
       : inverse_(factor.matrixL().solve(Eigen::MatrixXd::Identity(factor.rows(), factor.rows()))),
         nuisance_(nuisance),
-        value_(value) {}
+        value_(log_det_of_last(factor, factor.rows() - nuisance)) {}
   double value(const BlockArray::ConstMap& J) override {
     Z_.noalias() = inverse_ * J.transpose();
-    product_.noalias() = Z_.topRows(nuisance_).transpose() * Z_.topRows(nuisance_);
-    const double nuisance = log_det_with_one();
-    product_.noalias() += Z_.bottomRows(Z_.rows() - nuisance_).transpose() * Z_.bottomRows(Z_.rows() - nuisance_);
-    return value_ + log_det_with_one() - nuisance;
+    return log_det_with_block(value_, Z_, nuisance_);
   }
 
  private:
-  /// ln det(I + product).
-  double log_det_with_one() {
-    sum_ = product_;
-    sum_.diagonal().array() += 1;
-    factor_.compute(sum_);
-    return 2 * factor_.matrixLLT().diagonal().array().log().sum();
-  }
-
   Eigen::MatrixXd inverse_;
   Eigen::Index nuisance_;
   double value_;
-  Eigen::MatrixXd Z_, product_, sum_;
-  Eigen::LLT<Eigen::MatrixXd> factor_;
+  Eigen::MatrixXd Z_;
 };
 
 }  // namespace
@@ -104,14 +92,13 @@ class LogDetWithBlock : public BlockFunction {
 double LogDetFunction::value(const Eigen::MatrixXd& information) const {
   const Eigen::LLT<Eigen::MatrixXd> factor(information);
   if (!is_regular(factor)) return -std::numeric_limits<double>::infinity();
-  return 2 * factor.matrixLLT().diagonal().tail(interest_).array().log().sum();
+  return log_det_of_last(factor, interest_);
 }
 
 std::unique_ptr<BlockFunction> LogDetFunction::with_block(const Eigen::MatrixXd& information) const {
   const Eigen::LLT<Eigen::MatrixXd> factor(information);
   if (!is_regular(factor)) return InformationFunction::with_block(information);
-  const double value = 2 * factor.matrixLLT().diagonal().tail(interest_).array().log().sum();
-  return std::make_unique<LogDetWithBlock>(factor, nuisance_, value);
+  return std::make_unique<LogDetWithBlock>(factor, nuisance_);
 }
 
 Eigen::MatrixXd LogDetFunction::gradient(const Eigen::MatrixXd& information) const {
